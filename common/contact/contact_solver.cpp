@@ -280,6 +280,7 @@ void ContactSolver::solve(ContactPatch& patch, std::span<const TouchingTool> too
     }
   }
   u = next;
+  result.converged = result.converged && !is_passed();
   collect_result(m, result, forces);
 }
 
@@ -377,6 +378,17 @@ void ContactSolver::collect_result(int nodes, const ContactForce& outcome,
       for (int i = 0; i < c.size; ++i) node_force_.segment<3>(3 * c.node[i]) -= size * c.weight[i] * d;
     }
   }
+}
+
+/// True if a contact bears so much that its own compliance lets the surface pass it: no place is left for
+/// what cannot give way.
+bool ContactSolver::is_passed() const noexcept {
+  constexpr double kPassed = 0.01;  // of the tool radius; of tissue it is less than a millionth
+  const int rows = rows_of_contact();
+  for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
+    if (lambda_[rows * k] * contact_compliance_ > kPassed * contacts_[k].radius) return true;
+  }
+  return false;
 }
 
 void ContactSolver::node_forces_of(int tool, Eigen::Ref<Eigen::VectorXd> forces) const noexcept {

@@ -168,6 +168,7 @@ class ContactSolver {
   void store(const Eigen::Ref<const Eigen::VectorXd>& force) noexcept;
   void recall(Eigen::Ref<Eigen::VectorXd> force) const noexcept;
   void solve_linearised(const ContactPatch& patch, Eigen::Ref<Eigen::VectorXd> next) noexcept;
+  bool is_passed() const noexcept;
   void collect_result(int nodes, const ContactForce& outcome, std::span<ContactForce> forces) noexcept;
   // Second order, in contact_derivatives.cpp:
   void collect_nodes(int nodes) noexcept;

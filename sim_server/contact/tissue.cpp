@@ -95,20 +95,52 @@ bool Tissue::touches(std::size_t tool) {
     mine.free = free;
     return false;
   }
+  take_loads_of_others(mine);
+  positions = model->apply(std::span(mine.loads).first(mine.others));
+  const bool moved = push(mine);
+  if (!mine.own().empty()) apply_loads(tool);
+  return moved;
+}
+
+void Tissue::take_loads_of_others(ToolLoads& mine) {
   auto& loads = mine.loads;
   loads.erase(loads.begin(), loads.begin() + static_cast<long>(mine.others));
   const std::size_t own = loads.size();
   for (const ToolLoads& other : tools_) {
-    if (!loaded(other)) continue;
+    if (&other == &mine || other.own().empty()) continue;
     const auto theirs = other.own();
     loads.insert(loads.end(), theirs.begin(), theirs.end());
   }
   mine.others = loads.size() - own;
   std::rotate(loads.begin(), loads.begin() + static_cast<long>(own), loads.end());
-  positions = model->apply(std::span(loads).first(mine.others));
-  const bool moved = push(mine);
-  if (own > 0) apply_loads(tool);
-  return moved;
+}
+
+ToolTissue Tissue::known_to(std::size_t tool) {
+  return {*this, tool, false};
+}
+
+void Tissue::replace_loads(std::size_t tool, std::span<const VertexLoad> loads) {
+  auto& mine = tools_[tool];
+  mine.loads.erase(mine.loads.begin() + static_cast<long>(mine.others), mine.loads.end());
+  mine.loads.insert(mine.loads.end(), loads.begin(), loads.end());
+}
+
+void Tissue::apply_all_loads() {
+  for (ToolLoads& tool : tools_) take_loads_of_others(tool);
+  apply_loads(0);
+  for (ToolLoads& tool : tools_) put_on_way(tool);
+}
+
+/// The surface as a tool meets it that still has some of the way to come.
+void Tissue::put_on_way(ToolLoads& mine) {
+  for (std::size_t v = 0; mine.remaining > 0 && v < mine.shift.size(); ++v)
+    mine.positions_at[v] = positions[v] - mine.remaining * mine.shift[v];
+}
+
+Vec3 ToolTissue::still_to_come(int vertex) const noexcept {
+  const auto& mine = tissue_.tools_[tool_];
+  return mine.remaining > 0 ? Vec3(mine.remaining * mine.shift[static_cast<std::size_t>(vertex)])
+                            : Vec3(Vec3::Zero());
 }
 
 /// What is free to this tool is pushed to `positions`, if that moves it. Returns whether what matters to it
@@ -142,10 +174,7 @@ std::span<const Vec3> ToolTissue::positions() const {
 
 void ToolTissue::apply_loads() {
   tissue_.apply_loads(tool_);
-  auto& mine = tissue_.tools_[tool_];
-  if (mine.remaining == 0) return;
-  for (std::size_t v = 0; v < mine.shift.size(); ++v)
-    mine.positions_at[v] = tissue_.positions[v] - mine.remaining * mine.shift[v];
+  tissue_.put_on_way(tissue_.tools_[tool_]);
 }
 
 void Tissue::set_free(const FreeMotion& motion) noexcept {
@@ -238,9 +267,7 @@ void ToolTissue::mark_solved(std::span<const int> touched) noexcept {
 }
 
 void ToolTissue::set_loads(std::span<const VertexLoad> loads) {
-  auto& mine = tissue_.tools_[tool_];
-  mine.loads.erase(mine.loads.begin() + static_cast<long>(mine.others), mine.loads.end());
-  mine.loads.insert(mine.loads.end(), loads.begin(), loads.end());
+  tissue_.replace_loads(tool_, loads);
 }
 
 void ToolTissue::release() {

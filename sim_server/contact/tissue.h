@@ -49,6 +49,12 @@ class Tissue {
   void carry(std::size_t tool, const Vec3& motion) noexcept { tools_[tool].carried += motion; }
   /// Tissue has been removed: the loads on vertices that are not `on_surface` any more go with it.
   void drop_loads(const std::function<bool(int)>& on_surface);
+  /// Returns the tissue as this tool met it last: what the others have put on it since is not looked at.
+  ToolTissue known_to(std::size_t tool);
+  /// Replaces the loads of one tool; the tissue follows at `apply_all_loads`.
+  void replace_loads(std::size_t tool, std::span<const VertexLoad> loads);
+  /// The tissue goes where the loads of all tools press it. One `apply` of the model.
+  void apply_all_loads();
   /// `positions`, under the loads of now, or where no tool has any.
   void apply_loads(std::size_t tool) { positions = model->apply(tools_[tool].loads); }
   void press_by_none() { positions = model->apply({}); }
@@ -82,6 +88,8 @@ class Tissue {
     std::span<const VertexLoad> own() const { return std::span(loads).subspan(others); }
   };
   bool touches(std::size_t tool);
+  void take_loads_of_others(ToolLoads& mine);
+  void put_on_way(ToolLoads& mine);
   bool push(ToolLoads& tool);
   std::span<const int> moved_since(const ToolLoads& tool) const noexcept;
   static void note_shift(ToolLoads& tool, std::span<const Vec3> positions, std::size_t vertex) noexcept;
@@ -128,6 +136,8 @@ class ToolTissue {
   /// have come within `reach` (m) of the tool's axis from `p` to `q`: by a step of a tissue in motion, a new
   /// linearisation or other tools. Contact then meets that motion in parts. O(vertices).
   double surface_motion(const Vec3& p, const Vec3& q, double reach);
+  /// Returns how much of this motion of a vertex is still to come, m.
+  Vec3 still_to_come(int vertex) const noexcept;
   /// Puts the surface where that share of this motion is still to come, from 1 to 0. Of its answers,
   /// `positions` and `free` are there.
   void set_remaining_fraction(double remaining);

@@ -72,13 +72,20 @@ void ToolContact::change_surface(std::span<const Vec3> rest, const Surface& surf
 }
 
 void ToolContact::advance_to(const ToolPose& pose, const Bend& path, ToolTissue tissue) {
-  bend_ = path;
-  if (grip_ && grip_->opens()) {
-    release(tissue);
-    separate();
-  }
+  open_grip(tissue);
+  way_.bend = path;
   move_to(pose, tissue);
-  bend_ = {};
+  way_.bend = {};
+  close_grip(tissue);
+}
+
+void ToolContact::open_grip(ToolTissue tissue) {
+  if (!grip_ || !grip_->opens()) return;
+  release(tissue);
+  separate();
+}
+
+void ToolContact::close_grip(ToolTissue tissue) {
   if (!grip_ || !grip_->closes() || !now_.placed || !now_.arrived) return;
   grip_->close(now_.place.p_W, tissue.positions());
   if (holds()) solve_grasp(now_.place, tissue);
@@ -101,43 +108,85 @@ void ToolContact::solve_grasp(const ToolPose& pose, ToolTissue tissue) {
 }
 
 void ToolContact::move_to(const ToolPose& pose, ToolTissue tissue) {
-  if (!pose.p_W.allFinite() || pose.p_W.cwiseAbs().maxCoeff() > kMaxDistance ||
-      !pose.q_W.coeffs().allFinite())
-    return reject(tissue);
-  if (holds()) return solve_grasp(pose, tissue);
-  const bool lost = now_.placed && escaped(pose, tissue);
-  const bool anew =
-      !now_.placed || lost || (pose.p_W - now_.place.p_W).norm() > kMaxIncrements * kIncrement * tool_.radius;
-  if (anew || !now_.arrived) bend_ = {};
-  if (anew) place_outside(pose, tissue);
-  const Vec3 motion = pose.p_W - now_.place.p_W;
-  const ToolPose from = now_.place;
-  const double surface = anew ? 0 : surface_motion(tissue);
-  const double increments = std::max(increments_to(pose), increments_for(motion.norm(), surface));
-  const bool anywhere = tissue.traits().constant_compliance;
-  const double increment = motion.norm() / increments / tool_.radius;
+  if (holds() && is_tame(pose)) return solve_grasp(pose, tissue);
+  if (!start_way(pose, way_.bend, tissue)) return;
   ContactForce contact;
-  int iterations = 0;
-  double pressed = 0;  // of the tool radius, in contact
-  for (double i = 1; i <= increments && iterations < kMaxIterations; ++i) {
-    if (pressed > kMaxPress && !anywhere) break;
-    start_increment(i == 1, tissue);
-    const double fraction = i / increments;
-    if (surface > 0) tissue.set_remaining_fraction(1 - fraction);
-    now_.place = i == increments ? pose
-                                 : ToolPose(from.p_W + fraction * motion + path_offset(fraction, motion),
-                                            from.q_W.slerp(fraction, pose.q_W));
-    const bool touched = pressed > 0 || now_.force.contacts > 0;
+  for (int i = 1; i <= way_.increments && !has_stopped(tissue); ++i) {
+    go_on(i, way_.increments, tissue);
     contact = solve_contact(tissue);
-    iterations += contact.iterations;
-    if (contact.contacts > 0) pressed += increment;
-    if (contact.contacts == 0 && touched && recover_from_inside(tissue)) break;
+    note(contact, tissue);
   }
+  end_way(contact, tissue);
+}
+
+/// False of a position that no tool has.
+bool ToolContact::is_tame(const ToolPose& pose) noexcept {
+  return pose.p_W.allFinite() && pose.p_W.cwiseAbs().maxCoeff() <= kMaxDistance &&
+         pose.q_W.coeffs().allFinite();
+}
+
+bool ToolContact::start_way(const ToolPose& pose, Bend path, ToolTissue tissue) {
+  way_ = {};
+  if (!is_tame(pose)) {
+    reject(tissue);
+    return false;
+  }
+  way_.lost = now_.placed && escaped(pose, tissue);
+  const bool anew = !now_.placed || way_.lost ||
+                    (pose.p_W - now_.place.p_W).norm() > kMaxIncrements * kIncrement * tool_.radius;
+  if (!anew && now_.arrived) way_.bend = path;
+  if (anew) place_outside(pose, tissue);
+  way_.from = now_.place;
+  way_.to = pose;
+  way_.motion = pose.p_W - now_.place.p_W;
+  way_.surface = anew ? 0 : surface_motion(tissue);
+  way_.increments =
+      static_cast<int>(std::max(increments_to(pose), increments_for(way_.motion.norm(), way_.surface)));
+  way_.touched = now_.force.contacts > 0;
+  return true;
+}
+
+void ToolContact::start_settling(ToolTissue tissue) {
+  way_ = {};
+  way_.from = way_.to = now_.place;
+  way_.surface = surface_motion(tissue);
+  way_.increments = static_cast<int>(increments_for(0, way_.surface));
+  way_.again = true;
+  way_.touched = now_.force.contacts > 0;
+  way_.iterations = now_.force.iterations;
+}
+
+void ToolContact::go_on(int increment, int of, ToolTissue tissue) {
+  if (!way_.again) start_increment(increment == 1, tissue);
+  const double fraction = static_cast<double>(increment) / of;
+  if (way_.surface > 0) tissue.set_remaining_fraction(1 - fraction);
+  way_.length = way_.motion.norm() / of / tool_.radius;
+  if (way_.again) return;
+  now_.place = increment == of
+                   ? way_.to
+                   : ToolPose(way_.from.p_W + fraction * way_.motion + path_offset(fraction, way_.motion),
+                              way_.from.q_W.slerp(fraction, way_.to.q_W));
+}
+
+bool ToolContact::has_stopped(const ToolTissue& tissue) const {
+  const int most = way_.again ? kMaxIterations + kMaxSettling : kMaxIterations;
+  const bool anywhere = tissue.traits().constant_compliance;
+  return way_.stopped || way_.iterations >= most || (way_.pressed > kMaxPress && !anywhere);
+}
+
+void ToolContact::note(const ContactForce& contact, ToolTissue tissue) {
+  const bool touched = way_.pressed > 0 || way_.touched;
+  way_.iterations += contact.iterations;
+  if (contact.contacts > 0) way_.pressed += way_.length;
+  if (contact.contacts == 0 && touched && recover_from_inside(tissue)) way_.stopped = true;
+}
+
+void ToolContact::end_way(const ContactForce& contact, ToolTissue tissue) {
   tissue.set_remaining_fraction(0);
   // Else the next step goes on from here.
-  now_.arrived = now_.place.p_W == pose.p_W && now_.place.q_W.coeffs() == pose.q_W.coeffs();
-  set_force(contact, iterations, tissue);
-  if (lost) flag();
+  now_.arrived = now_.place.p_W == way_.to.p_W && now_.place.q_W.coeffs() == way_.to.q_W.coeffs();
+  set_force(contact, way_.iterations, tissue);
+  if (way_.lost) flag();
 }
 
 /// How far the surface near the tool has gone since contact was last solved, m; 0: not so far that the tool
@@ -174,7 +223,8 @@ Vec3 ToolContact::path_offset(double fraction, const Vec3& motion) const noexcep
     if (!std::isfinite(size)) return Vec3::Zero();
     return size <= most ? bend : most / size * bend;
   };
-  return fraction * (1 - fraction) * ((1 - fraction) * bounded(bend_.begin) - fraction * bounded(bend_.end));
+  return fraction * (1 - fraction) *
+         ((1 - fraction) * bounded(way_.bend.begin) - fraction * bounded(way_.bend.end));
 }
 
 Vec3 ToolContact::surface_velocity(const Vec3& p_W, const Tissue& tissue, std::span<const Vec3> velocities,
@@ -224,15 +274,27 @@ void ToolContact::set_force(const ContactForce& contact, int iterations, ToolTis
   if (!now_.force.flagged) store_side(tissue);
 }
 
+const ContactPatch& ToolContact::gather(std::span<const Vec3> positions,
+                                        std::span<const Vec3> free) noexcept {
+  const ToolPose tip(now_.place.p_W + now_.tip_offset, now_.place.q_W);
+  finder_.gather(positions, free, tip.p_W, far_end(tool_, tip), kGather * tool_.radius, patch_);
+  filled_.clear();
+  return patch_;
+}
+
 void ToolContact::differentiate(ToolTissue tissue) noexcept {
   if (now_.force.contacts == 0) return;
-  now_.force.tangent = holds() ? now_.grasp_tangent : solver_.tangent(patch_);
-  predictor_.changes.clear();
-  predictor_.from = now_.place.p_W;
+  set_tangent(holds() ? now_.grasp_tangent : solver_.tangent(patch_), tissue);
   solver_.for_load_changes([&](int node, const Mat3& change) {
     if (!holds() && tissue.traits().constant_compliance)
       predictor_.changes.push_back({filled_[node], change});
   });
+}
+
+void ToolContact::set_tangent(const Mat3& tangent, const ToolTissue& tissue) noexcept {
+  now_.force.tangent = tangent;
+  predictor_.changes.clear();
+  predictor_.from = now_.place.p_W;
   if (tangent_time_ == 0 || tissue.traits().later == nullptr) return;
   // Tissue that gives way by so much more by then stands behind the contact like a spring in a row with it.
   const Mat3 &k = now_.force.tangent,

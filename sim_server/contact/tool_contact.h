@@ -16,7 +16,7 @@ struct ToolForce {
   int contacts = 0;    ///< touching faces, edges and vertices; or vertices that it grasps
   int iterations = 0;  ///< contact linearisations, all sub-places together
   /// No settled answer: a wild position (then there is no force), contact that did not converge, several
-  /// tools that did not come to an equilibrium (then all stay, with their forces, where they were), tissue
+  /// tools without a common equilibrium (then all stay, with their forces, where they were), tissue
   /// that found no balance or closed over the tool, a motion too long for one step (then the force belongs to
   /// the place the tool got to), or an organ that ran away: some of its surface at no finite place, or,
   /// though held, three times its size from rest (then the force is half that of the step before), contact
@@ -79,6 +79,32 @@ class ToolContact {
                         std::span<const VertexLoad> loads) const noexcept;
   /// Solves its last increment again, on the surface as it is free by now.
   void settle(ToolTissue tissue);
+  /// Finds the triangles near the tool where it is, of a surface at `positions` that would be at `free`
+  /// without it. The compliance of the patch is not there; its nodes are `patch_vertices`.
+  const ContactPatch& gather(std::span<const Vec3> positions, std::span<const Vec3> free) noexcept;
+  std::span<const int> patch_vertices() const { return finder_.vertices(); }
+  /// Opens or closes the jaws, as the buttons say: before its way in a step, and after it.
+  void open_grip(ToolTissue tissue);
+  void close_grip(ToolTissue tissue);
+  /// Starts the way to `pose`, as `advance_to` does, in `increments`. Returns false if there is no such
+  /// place: then the tool is taken away. Not of a tool that holds tissue.
+  bool start_way(const ToolPose& pose, Bend path, ToolTissue tissue);
+  /// Starts to solve the last increment again, on the surface as it is free by now.
+  void start_settling(ToolTissue tissue);
+  int increments() const { return way_.increments; }
+  /// Goes to the end of this increment, from 1, of so many in all.
+  void go_on(int increment, int of, ToolTissue tissue);
+  /// Solves contact of this tool alone where it is now, and puts its loads on the tissue.
+  ContactForce solve_contact(ToolTissue tissue);
+  /// Takes over where the tip stands by a contact that was solved elsewhere, from the place, m.
+  void set_tip_offset(const Vec3& offset) noexcept { now_.tip_offset = offset; }
+  /// Notes the contact of an increment, whose loads are on the tissue. Where the tissue has closed over the
+  /// tool, it stops, and stands before the surface without a load.
+  void note(const ContactForce& contact, ToolTissue tissue);
+  /// True if it goes no further in this step.
+  bool has_stopped(const ToolTissue& tissue) const;
+  /// Ends the way with this contact.
+  void end_way(const ContactForce& contact, ToolTissue tissue);
   /// Remembers where it stands and what it feels, with its `loads`; `restore` takes it, and the tissue, back
   /// there, bit by bit.
   void keep(std::span<const VertexLoad> loads);
@@ -97,6 +123,8 @@ class ToolContact {
   void separate() noexcept;
   /// Adds the tangent to `force`. Of the last place where contact was solved: before another is asked for.
   void differentiate(ToolTissue tissue) noexcept;
+  /// Sets the tangent of `force` to one that was found elsewhere, N/m.
+  void set_tangent(const Mat3& tangent, const ToolTissue& tissue) noexcept;
   /// Sets how long (s) a tool holds its new place in tangents; 0: to the end of the step.
   void predict_tangent(double seconds) noexcept { tangent_time_ = seconds; }
   /// Says that `force` is not settled.
@@ -107,19 +135,31 @@ class ToolContact {
   bool holds() const { return grip_ && grip_->holds(); }
   /// True if it releases tissue at the next `advance_to`.
   bool opens() const { return grip_ && grip_->opens(); }
+  /// True if it takes hold of tissue at the end of its way in this step.
+  bool closes() const { return grip_ && grip_->closes(); }
   /// True if this step has used up its contact linearisations.
   bool exhausted() const;
   const ToolForce& force() const { return now_.force; }
   const Vec3& place() const { return now_.place.p_W; }
+  /// Where the tip is, less `place`, m.
+  const Vec3& tip_offset() const { return now_.tip_offset; }
+  /// Returns where the tip was when the increment in hand began; only with friction.
+  const ToolPose& increment_start() const { return tip_was_; }
+  /// Returns where a surface vertex was then; without friction, of those at `now`.
+  const Vec3& increment_start(int vertex, std::span<const Vec3> now) const {
+    return increment_from_.empty() ? now[vertex] : increment_from_[vertex];
+  }
   const ToolPose& pose() const { return now_.place; }
   double radius() const { return tool_.radius; }
   const Tool& shape() const { return tool_; }
   std::span<const Triangle> touchable() const { return finder_.touchable(); }
   bool has_friction() const { return tool_.friction > 0; }
   int max_nodes() const { return finder_.max_nodes(); }
+  int max_triangles() const { return finder_.max_triangles(); }
   std::size_t bytes() const;
 
  private:
+  static bool is_tame(const ToolPose& pose) noexcept;
   void move_to(const ToolPose& pose, ToolTissue tissue);
   void solve_grasp(const ToolPose& pose, ToolTissue tissue);
   void reject(ToolTissue tissue);
@@ -135,7 +175,6 @@ class ToolContact {
   double increments_to(const ToolPose& pose) const noexcept;
   Vec3 path_offset(double fraction, const Vec3& motion) const noexcept;
   void take_compliance(const ToolTissue& tissue);
-  ContactForce solve_contact(ToolTissue tissue);
   void predict(Eigen::Ref<Eigen::VectorXd> u) noexcept;
   void release(ToolTissue tissue);
   void set_force(const ContactForce& contact, int iterations, ToolTissue tissue);
@@ -156,7 +195,19 @@ class ToolContact {
   std::span<const Vec3> increment_from_;
   std::vector<Vec3> surface_was_, nodes_were_;
   ToolPose tip_was_;
-  Bend bend_;
+  /// The way of the tool in a step.
+  struct Way {
+    ToolPose from, to;
+    Vec3 motion = Vec3::Zero();  // m
+    Bend bend;
+    double surface = 0;  // how far the surface comes along, m; 0: not so far that this matters
+    int increments = 1;
+    double length = 0, pressed = 0;  // of an increment, and of those in contact, of the tool radius
+    int iterations = 0;
+    bool again = false;  // it stays, and its last increment is solved again
+    bool lost = false, touched = false, stopped = false;
+  };
+  Way way_;
   /// Pose and force of the tool.
   struct State {
     ToolPose place;                  // of the last step

@@ -1,6 +1,7 @@
 #include "sim_server/simulation/simulation.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <new>
 #include <numeric>
@@ -139,7 +140,10 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   const std::vector<int> held = on_surface(fixed, organ_.surface);
   tools_ = make_tools(scene, tissue_.free, organ_.surface, std::move(touchable), held, progress);
   const std::size_t all_loads = make_room_for_loads(tools_, tissue_);
-  if (tools_.size() > 1) coupling_.emplace(tools_.size(), organ_.rest.size(), all_loads);
+  if (tools_.size() > 1) {
+    coupling_.emplace(tools_.size(), organ_.rest.size(), all_loads);
+    joint_.emplace(tools_, organ_.rest.size());
+  }
   tracks_.resize(tools_.size());
   for (Track& track : tracks_) track.recent.reserve(2 * kSpacing + 1);
   make_room_for_modes();
@@ -237,6 +241,7 @@ void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
     track.late_mean.setZero();
   }
   tissue_.start_step();
+  if (joint_) joint_->forget();
   if (cut_ && cut_->start_step(inputs, status_.time, dt, cut_organ())) {
     ++published_.version;
     make_room_for_modes();
@@ -265,11 +270,17 @@ void Simulation::answer(std::size_t tool, const ToolInput& input, double dt) {
   if (instants() > 1)
     contact.predict_tangent(std::max(dt, input.request.ahead ? input.request.ahead->seconds : 0));
   const bool publishes_tangents = tissue_.traits.publishes_tangents;
-  if (input.request.tangent && publishes_tangents) contact.differentiate(tissue_.touched_by(tool));
+  if (input.request.tangent && publishes_tangents) differentiate(tool);
   static_cast<ToolForce&>(answer) = contact.force();
   if (!publishes_tangents) answer.force = tracks_[tool].late_mean;
   answer.mean_force = tracks_[tool].mean;
   if (cut_) cut_->resist(tool, contact, dt, answer);
+}
+
+void Simulation::differentiate(std::size_t tool) {
+  if (joint_ && joint_->has_solved(tool))
+    return joint_->differentiate(tool, tools_[tool], tissue_.known_to(tool));
+  tools_[tool].differentiate(tissue_.touched_by(tool));
 }
 
 /// Where contact is solved at an instant of a step: where the tool is then, or, where the model's force
@@ -316,13 +327,14 @@ void Simulation::advance_to_instant(std::span<const ToolInput> inputs, int insta
     if (!inputs[i].pose) separate_tool(i);
     if (tools_.size() > 1) tools_[i].keep(tissue_.loads_of(i));
   }
+  std::array<std::optional<PathPoint>, kMaxTools> to;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     if (!inputs[i].pose) continue;
     if (tissue_.traits.leading_force) add_recent(i, at_instant(i, inputs[i], instant).pose);
-    const PathPoint point = contact_point(i, inputs[i], instant);
-    tools_[i].advance_to(point.pose, point.bend, tissue_.touched_by(i));
+    to[i] = contact_point(i, inputs[i], instant);
   }
   status_.tools_settled = true;
+  advance_tools(std::span(to).first(tools_.size()));
   solve_contacts();
   if (!status_.tools_settled) restore_touching();
   if (!tissue_.before.empty()) std::ranges::copy(tissue_.positions, tissue_.before.begin());
@@ -333,10 +345,9 @@ void Simulation::advance_to_instant(std::span<const ToolInput> inputs, int insta
   }
 }
 
-/// Contact of all tools, and again where a linearisation about where it led says something else. Where no
+/// Contact again where a linearisation about where it led says something else. Where no
 /// more contact is to be found in this step, the body is still brought to balance with the last.
 void Simulation::solve_contacts() {
-  settle();
   bool found = true;
   NonlinearModel* const nonlinear = tissue_.traits.nonlinear;
   if (nonlinear == nullptr) return;
@@ -344,9 +355,6 @@ void Simulation::solve_contacts() {
     tissue_.set_free(*motion);
     found = found && std::ranges::none_of(tools_, &ToolContact::exhausted);
     if (!found) continue;
-    for (std::size_t i = 0; i < tools_.size(); ++i) {
-      if (tools_[i].placed()) tools_[i].settle(tissue_.touched_by(i));
-    }
     settle();
   }
   if (!found || !balanced()) flag_contacts();

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 
+#include "sim_server/contact/joint_contact.h"
 #include "sim_server/contact/tool_step.h"
 #include "sim_server/cutting/tissue_cut.h"
 #include "sim_server/mesh/tet_mesh.h"
@@ -152,7 +153,10 @@ class Simulation {
   bool searches_everywhere(std::size_t tool, const ToolInput& input) const noexcept;
   void restrict_contact(std::span<const ToolInput> inputs);
   void move_organ(double dt);
+  void advance_tools(std::span<const std::optional<PathPoint>> to);
   void settle();
+  void settle_grasps(bool converged);
+  void differentiate(std::size_t tool);
   void flag_contacts() noexcept;
   void solve_contacts();
   void restore_touching();
@@ -170,6 +174,7 @@ class Simulation {
   Tissue tissue_;
   std::vector<ToolContact> tools_;
   std::optional<ToolCoupling> coupling_;  // of several tools
+  std::optional<JointContact> joint_;     // of several tools
   std::vector<Track> tracks_;             // of each tool
   std::vector<Neighbourhood> places_;     // around the paths of the tools in this step
   std::vector<ToolInput> inputs_;         // for the step of tool 0 alone

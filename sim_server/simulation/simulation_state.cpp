@@ -39,6 +39,7 @@ void Simulation::restore(const SimulationState& state) {
   tissue_.restore(saved.tissue, motion);
   for (std::size_t i = 0; i < tools_.size(); ++i) tools_[i].restore_from(saved.tools[i]);
   coupling_ = saved.coupling;
+  if (joint_) joint_->forget();
   tracks_ = saved.tracks;
   published_ = saved.published;
   answers_ = saved.answers;

@@ -24,7 +24,7 @@ void Simulation::couple(std::span<const ToolInput> inputs) {
   if (!status_.coupled) return;
   std::array<Vec3, kMaxTools> velocities;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
-    tools_[i].differentiate(tissue_.touched_by(i));
+    differentiate(i);
     const bool known = inputs[i].pose && inputs[i].v_W.norm() <= kFastestTool;
     velocities[i] = known ? inputs[i].v_W : Vec3(Vec3::Zero());
   }

@@ -7,32 +7,54 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kNear = 2;          // of the tool radius: where the surface is looked at for motion
-constexpr double kUnsettled = 1e-3;  // of the tool radius: by how much others push the surface, as one turn
-constexpr std::size_t kMaxSweeps = 100;  // over all tools, until they are in equilibrium
+constexpr std::size_t kMaxSweeps =
+    100;  // over tools that grasp, until they are in equilibrium with the others
 
 }  // namespace
 
-/// Block Gauss-Seidel over the tools (for a linear tissue: on the complementarity problem of all contacts
-/// together, which is convex): each in turn solves its own contact on the surface that the others have
-/// pushed, until it stands still for all of them.
-void Simulation::settle() {
-  std::size_t unchanged = 1;  // tools in a row that need nothing; the last one has just been solved
-  for (std::size_t turn = 0; unchanged < tools_.size(); ++turn) {
-    const std::size_t i = turn % tools_.size();
-    ToolContact& tool = tools_[i];
-    ++unchanged;
-    if (!tool.placed()) continue;
-    const ToolTissue tissue = tissue_.touched_by(i);
-    if (!tissue.moved()) continue;
-    if (tool.exhausted() || turn >= kMaxSweeps * tools_.size()) {
-      status_.tools_settled = false;
-      flag_contacts();
-      return;
-    }
-    tool.settle(tissue);
-    unchanged = 1;
+/// Takes the tools to these poses. One by itself; several together, as all their contacts are one problem
+/// (`JointContact`), with which tools that grasp come to rest in turns.
+void Simulation::advance_tools(std::span<const std::optional<PathPoint>> to) {
+  if (!joint_) {
+    if (to[0]) tools_[0].advance_to(to[0]->pose, to[0]->bend, tissue_.touched_by(0));
+    return;
   }
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    if (!to[i]) continue;
+    if (tools_[i].opens()) tools_[i].open_grip(tissue_.touched_by(i));
+    if (tools_[i].holds()) tools_[i].advance_to(to[i]->pose, to[i]->bend, tissue_.touched_by(i));
+  }
+  bool converged = joint_->advance(tools_, to, tissue_);
+  for (std::size_t i = 0; i < tools_.size(); ++i) {
+    if (to[i] && tools_[i].closes()) tools_[i].close_grip(tissue_.touched_by(i));
+  }
+  settle_grasps(converged);
+}
+
+/// Contact of all tools where they are, on the tissue as it is free by now.
+void Simulation::settle() {
+  if (joint_) return settle_grasps(joint_->settle(tools_, tissue_));
+  if (tools_[0].placed()) tools_[0].settle(tissue_.touched_by(0));
+}
+
+/// Tools that grasp come to rest with the others, each with the loads of the others held.
+void Simulation::settle_grasps(bool converged) {
+  const auto holds = [](const ToolContact& tool) { return tool.placed() && tool.holds(); };
+  bool moved = std::ranges::any_of(tools_, holds);
+  for (std::size_t sweep = 0; converged && moved && sweep < kMaxSweeps; ++sweep) {
+    moved = false;
+    for (std::size_t i = 0; i < tools_.size(); ++i) {
+      if (!holds(tools_[i])) continue;
+      const ToolTissue tissue = tissue_.touched_by(i);
+      if (!tissue.moved()) continue;
+      tools_[i].settle(tissue);
+      moved = true;
+    }
+    if (moved) converged = joint_->settle(tools_, tissue_);
+  }
+  if (converged && !moved) return;
+  status_.tools_settled = false;
+  flag_contacts();
 }
 
 void Simulation::flag_contacts() noexcept {
@@ -41,19 +63,12 @@ void Simulation::flag_contacts() noexcept {
   }
 }
 
-/// Several tools that found no equilibrium, and still push the surface from under each other: what they press
-/// with by now may be anything, and the next step would begin with that. They stay where they were, with what
-/// they felt there.
+/// Tools that found no equilibrium on the same tissue, as there is no place left for it between them, say:
+/// what they press with by now may be anything, and the next step would begin with that. They stay where they
+/// were, with the forces they had there.
 void Simulation::restore_touching() {
   const auto touches = [](const ToolContact& tool) { return tool.force().contacts > 0; };
-  const auto pushed_on = [&](std::size_t i) {
-    const Vec3& p = tools_[i].place();
-    return tissue_.touched_by(i).surface_motion(p, p, kNear * tools_[i].radius()) >
-           kUnsettled * tools_[i].radius();
-  };
-  bool pushed = false;
-  for (std::size_t i = 0; i < tools_.size(); ++i) pushed = (touches(tools_[i]) && pushed_on(i)) || pushed;
-  if (!pushed || std::ranges::count_if(tools_, touches) < 2) return;
+  if (std::ranges::count_if(tools_, touches) < 2) return;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     const bool touched = touches(tools_[i]);
     tools_[i].restore(tissue_.touched_by(i));
@@ -74,7 +89,7 @@ bool Simulation::searches_everywhere(std::size_t tool, const ToolInput& input) c
 /// A ball on its way looks around that alone.
 void Simulation::restrict_contact(std::span<const ToolInput> inputs) {
   // Tool radii about its way: beyond what it touches, or is taken back to; what it holds is loaded anyway.
-  constexpr double kAround = 4, kAroundHeld = kNear;
+  constexpr double kAround = 4, kAroundHeld = 2;
   places_.clear();
   bool everywhere = std::exchange(status_.released, false);
   for (std::size_t i = 0; i < tools_.size(); ++i)

@@ -33,6 +33,11 @@ Problem random_problem(test::Random& random, int n, double skew) {
   return problem;
 }
 
+/// The same coefficient for all contacts.
+Eigen::VectorXd friction_of(const Problem& p) {
+  return Eigen::VectorXd::Constant(p.g.size() / 3, p.mu);
+}
+
 /// Signorini and Coulomb, written out: the largest violation, relative.
 double violation(const Problem& p, const Eigen::VectorXd& z) {
   const Eigen::VectorXd w = p.g_matrix * z + p.g;
@@ -59,7 +64,7 @@ TEST_CASE("Coulomb: random problems are solved to the conditions of Signorini an
     const Problem problem = random_problem(random, 1 + i % 14, i % 3 == 0 ? 0.02 : 0);
     Eigen::VectorXd z = Eigen::VectorXd::Zero(problem.g.size());
     CAPTURE(i);
-    REQUIRE(solver.solve(problem.g_matrix, problem.g, problem.mu, z));
+    REQUIRE(solver.solve(problem.g_matrix, problem.g, friction_of(problem), z));
     CHECK(violation(problem, z) < 1e-10);
     for (Eigen::Index k = 0; k < z.size(); k += 3) {
       const double fraction = z[k] > 0 ? z.segment<2>(k + 1).norm() / (problem.mu * z[k]) : -1;
@@ -76,9 +81,9 @@ TEST_CASE("Coulomb: the answer does not depend on where it starts, and is the sa
     CoulombSolver solver(8), other(20);
     Eigen::VectorXd cold = Eigen::VectorXd::Zero(24), again = cold, warm(24);
     for (Eigen::Index k = 0; k < 24; ++k) warm[k] = random.between(-1, 1);
-    REQUIRE(solver.solve(problem.g_matrix, problem.g, problem.mu, cold));
-    REQUIRE(other.solve(problem.g_matrix, problem.g, problem.mu, again));
-    REQUIRE(solver.solve(problem.g_matrix, problem.g, problem.mu, warm));
+    REQUIRE(solver.solve(problem.g_matrix, problem.g, friction_of(problem), cold));
+    REQUIRE(other.solve(problem.g_matrix, problem.g, friction_of(problem), again));
+    REQUIRE(solver.solve(problem.g_matrix, problem.g, friction_of(problem), warm));
     CHECK(cold == again);
     CHECK((cold - warm).norm() < 1e-9 * cold.norm() + 1e-15);
   }
@@ -93,7 +98,7 @@ TEST_CASE("Coulomb: contacts that coincide, and a stuck body that cannot give, s
   }
   CoulombSolver solver(3);
   Eigen::VectorXd z = Eigen::VectorXd::Zero(9);
-  REQUIRE(solver.solve(problem.g_matrix, problem.g, problem.mu, z));
+  REQUIRE(solver.solve(problem.g_matrix, problem.g, friction_of(problem), z));
   CHECK(z[0] + z[3] + z[6] == Approx(1).epsilon(1e-6));
   CHECK(z[1] + z[4] + z[7] == Approx(-0.3).epsilon(1e-6));
 }
@@ -104,17 +109,17 @@ TEST_CASE("Coulomb: the derivative of the solution agrees with finite difference
   for (int i = 0; i < 40; ++i) {
     Problem problem = random_problem(random, 6, i % 2 == 0 ? 0.02 : 0);
     Eigen::VectorXd z = Eigen::VectorXd::Zero(18);
-    REQUIRE(solver.solve(problem.g_matrix, problem.g, problem.mu, z));
+    REQUIRE(solver.solve(problem.g_matrix, problem.g, friction_of(problem), z));
     Eigen::Matrix<double, Eigen::Dynamic, 3> change(18, 3);
     for (Eigen::Index k = 0; k < change.size(); ++k) change.data()[k] = random.between(-1, 1);
     const Eigen::MatrixXd way = change;
     const Eigen::VectorXd w = problem.g_matrix * z + problem.g;
-    REQUIRE(solver.differentiate(problem.g_matrix, z, w, problem.mu, change));
+    REQUIRE(solver.differentiate(problem.g_matrix, z, w, friction_of(problem), change));
     constexpr double kStep = 1e-10;
     for (int c = 0; c < 3; ++c) {
       const auto at = [&](double step) {
         Eigen::VectorXd there = z;
-        REQUIRE(solver.solve(problem.g_matrix, problem.g + step * way.col(c), problem.mu, there));
+        REQUIRE(solver.solve(problem.g_matrix, problem.g + step * way.col(c), friction_of(problem), there));
         return there;
       };
       const Eigen::VectorXd slope = (at(kStep) - at(-kStep)) / (2 * kStep);
@@ -134,7 +139,7 @@ TEST_CASE("Coulomb: where work ends, forces are in the friction cones, wherever 
     Eigen::VectorXd z(problem.g.size());
     for (double& force : z) force = random.between(-1, 1);
     work.allow(1 + 200.0 * (i % 10));
-    unsolved += solver.solve(problem.g_matrix, problem.g, problem.mu, z) ? 0 : 1;
+    unsolved += solver.solve(problem.g_matrix, problem.g, friction_of(problem), z) ? 0 : 1;
     for (Eigen::Index k = 0; k < z.size(); k += 3) {
       CHECK(z[k] >= 0);
       CHECK(z.segment<2>(k + 1).norm() <= problem.mu * z[k] * (1 + 1e-12) + 1e-12);
@@ -148,12 +153,13 @@ TEST_CASE("Coulomb: a solve does not allocate") {
   const Problem problem = random_problem(random, 10, 0);
   CoulombSolver solver(10);
   Eigen::VectorXd z = Eigen::VectorXd::Zero(30);
+  const Eigen::VectorXd friction = friction_of(problem);
   Eigen::Matrix<double, Eigen::Dynamic, 3> change = Eigen::MatrixXd::Ones(30, 3);
   std::size_t allocations = 1;
   {
     const test::AllocationGuard guard;
-    solver.solve(problem.g_matrix, problem.g, problem.mu, z);
-    solver.differentiate(problem.g_matrix, z, problem.g, problem.mu, change);
+    solver.solve(problem.g_matrix, problem.g, friction, z);
+    solver.differentiate(problem.g_matrix, z, problem.g, friction, change);
     allocations = guard.count();
   }
   CHECK(allocations == 0);
