@@ -162,7 +162,7 @@ struct Own {
   const SetupCache* cache;
   const Condensed* condensed;
   Simulation simulation;
-  Press site;
+  std::vector<std::optional<Press>> sites;
   Cost cost;
   double compliance_ms = 0;  // of the set-up
 };
@@ -197,7 +197,7 @@ Omitted compare(Omitted row, const Scene& variant, const Own& own) {
       mesh.vertices.resize(static_cast<std::size_t>(resection->remaining().spares().first));
     Simulation simulation(variant, std::move(mesh), std::ref(times), own.cache, own.condensed);
     const Cost cost =
-        cost_of(simulation, times, time_steps(variant, simulation, own.site, own.steps, own.progress));
+        cost_of(simulation, times, time_steps(variant, simulation, own.sites, own.steps, own.progress));
     row.bytes = cost.bytes - own.cost.bytes;
     row.setup_ms = cost.setup_ms - own.cost.setup_ms;
     row.step_ms = cost.step_ms - own.cost.step_ms;
@@ -282,7 +282,7 @@ Omitted cutting(const Own& own) {
 /// What a step saves as long as no client's law asks for dF/dp.
 Omitted tangents(Own& own) {
   const StepTimes without =
-      time_steps(own.scene, own.simulation, own.site, own.steps, own.progress, {.tangent = false});
+      time_steps(own.scene, own.simulation, own.sites, own.steps, own.progress, {.tangent = false});
   return {.what = "tangents",
           .why = "nobody, until a client's law subscribes",
           .step_ms = own.cost.step_ms - without.contact_ns.quantile(0.5) / 1e6,
@@ -330,11 +330,11 @@ Explanation explain(const Scene& scene, const Progress& progress, int steps, con
   SetupTimes times(progress);
   Own own{scene, progress, steps, cache, condensed, Simulation(scene, std::ref(times), cache, condensed),
           {},    {}};
-  own.site = find_press(scene, own.simulation);
+  own.sites = find_presses(scene, own.simulation);
   Explanation explanation{.scene = scene,
                           .built = built_parts(scene, own.simulation, times),
                           .omitted = {},
-                          .steps = time_steps(scene, own.simulation, own.site, steps, progress),
+                          .steps = time_steps(scene, own.simulation, own.sites, steps, progress),
                           .state_hash = own.simulation.state_hash(),
                           .tetrahedra = own.simulation.mesh().tetrahedra.size()};
   own.cost = cost_of(own.simulation, times, explanation.steps);

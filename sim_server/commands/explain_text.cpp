@@ -113,10 +113,12 @@ std::string steps_text(const Explanation& explanation) {
     return Row{name, step_text(ns.quantile(0.5) / 1e6), step_text(ns.quantile(0.99) / 1e6),
                fmt::format("{} steps", ns.count())};
   };
-  std::string text = table({{"a step takes", "median", "p99", ""},
-                            row("tool free", steps.free_ns),
-                            row("in contact", steps.contact_ns)},
-                           1, 2);
+  const std::size_t tools = explanation.scene.tools.size();
+  std::string text =
+      table({{"a step takes", "median", "p99", ""},
+             row(tools > 1 ? "tools free" : "tool free", steps.free_ns),
+             row(tools > 1 ? fmt::format("in contact, {} tools", tools) : "in contact", steps.contact_ns)},
+            1, 2);
   if (const auto wanted = steps.contact_ns.count(); steps.contacts < wanted || steps.flagged > 0) {
     text += fmt::format("  only {} of the {} steps in contact touched; {} did not settle{}{}\n",
                         steps.contacts, wanted, steps.flagged, steps.why.empty() ? "" : ": ", steps.why);
