@@ -37,6 +37,9 @@ class Grip {
   void open() noexcept;
   bool holds() const { return !vertices_.empty(); }
   std::span<const int> vertices() const { return vertices_; }
+  /// From the tool centre to where each of them is held, m.
+  std::span<const Vec3> offsets() const { return offsets_; }
+  int max_vertices() const { return static_cast<int>(max_nodes_); }
 
   /// Force on the tool, N, and its tangent, N/m; `vertices` 0: the jaws are empty.
   struct Pull {

@@ -73,6 +73,7 @@ bool JointContact::go(std::span<ToolContact> tools, Tissue& tissue) {
     }
     if (!any) break;
     converged = solve(tools, tissue);
+    if (!converged) break;  // what comes after would begin from anywhere
   }
   for (std::size_t t = 0; t < tools.size(); ++t) {
     if (goes_[t]) tools[t].end_way(forces_[t], tissue.known_to(t));

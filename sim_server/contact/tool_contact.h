@@ -133,6 +133,10 @@ class ToolContact {
   bool placed() const { return now_.placed; }
   /// True if it has tissue in its jaws.
   bool holds() const { return grip_ && grip_->holds(); }
+  /// The vertices in its jaws, and from `place` to where each is held, m; of a tool that holds some.
+  std::span<const int> held_vertices() const { return grip_->vertices(); }
+  std::span<const Vec3> held_offsets() const { return grip_->offsets(); }
+  int max_held() const { return grip_ ? grip_->max_vertices() : 0; }
   /// True if it releases tissue at the next `advance_to`.
   bool opens() const { return grip_ && grip_->opens(); }
   /// True if it takes hold of tissue at the end of its way in this step.

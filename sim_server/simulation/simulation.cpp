@@ -143,6 +143,7 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   if (tools_.size() > 1) {
     coupling_.emplace(tools_.size(), organ_.rest.size(), all_loads);
     joint_.emplace(tools_, organ_.rest.size());
+    grips_.emplace(tools_);
   }
   tracks_.resize(tools_.size());
   for (Track& track : tracks_) track.recent.reserve(2 * kSpacing + 1);

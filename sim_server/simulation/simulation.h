@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "sim_server/contact/joint_contact.h"
+#include "sim_server/contact/joint_grip.h"
 #include "sim_server/contact/tool_step.h"
 #include "sim_server/cutting/tissue_cut.h"
 #include "sim_server/mesh/tet_mesh.h"
@@ -175,6 +176,7 @@ class Simulation {
   std::vector<ToolContact> tools_;
   std::optional<ToolCoupling> coupling_;  // of several tools
   std::optional<JointContact> joint_;     // of several tools
+  std::optional<JointGrip> grips_;        // of several tools
   std::vector<Track> tracks_;             // of each tool
   std::vector<Neighbourhood> places_;     // around the paths of the tools in this step
   std::vector<ToolInput> inputs_;         // for the step of tool 0 alone

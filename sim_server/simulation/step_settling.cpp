@@ -37,12 +37,13 @@ void Simulation::settle() {
   if (tools_[0].placed()) tools_[0].settle(tissue_.touched_by(0));
 }
 
-/// Tools that grasp come to rest with the others, each with the loads of the others held.
+/// What tools hold in their jaws, all of it at once, comes to rest with what they touch, in turns.
 void Simulation::settle_grasps(bool converged) {
   const auto holds = [](const ToolContact& tool) { return tool.placed() && tool.holds(); };
   bool moved = std::ranges::any_of(tools_, holds);
   for (std::size_t sweep = 0; converged && moved && sweep < kMaxSweeps; ++sweep) {
     moved = false;
+    grips_->settle(tools_, tissue_);
     for (std::size_t i = 0; i < tools_.size(); ++i) {
       if (!holds(tools_[i])) continue;
       const ToolTissue tissue = tissue_.touched_by(i);
