@@ -120,8 +120,9 @@ std::string steps_text(const Explanation& explanation) {
              row(tools > 1 ? fmt::format("in contact, {} tools", tools) : "in contact", steps.contact_ns)},
             1, 2);
   if (const auto wanted = steps.contact_ns.count(); steps.contacts < wanted || steps.flagged > 0) {
-    text += fmt::format("  only {} of the {} steps in contact touched; {} did not settle{}{}\n",
-                        steps.contacts, wanted, steps.flagged, steps.why.empty() ? "" : ": ", steps.why);
+    text += fmt::format("  {} touched in only {} of the {} steps in contact; {} did not settle{}{}\n",
+                        tools > 1 ? "all tools" : "the tool", steps.contacts, wanted, steps.flagged,
+                        steps.why.empty() ? "" : ": ", steps.why);
   }
   const Scene& scene = explanation.scene;
   const std::string requested =
