@@ -24,7 +24,7 @@ SimplexHessian hessian_of(const Contact& c, bool pivots, std::span<const Vec3> x
 void ContactSolver::collect_nodes(int nodes) noexcept {
   constexpr int kUnseen = -1, kLoaded = -2;  // marks of a node that is not numbered yet
   second_.nodes.clear();
-  const int tools = static_cast<int>(tools_.size());
+  const int tools = static_cast<int>(path_.tools.size());
   std::fill_n(second_.slot_of_node.begin(), nodes + tools, kUnseen);
   const auto for_each_node = [&](auto&& visit) {
     for (const int k : second_.considered) {
@@ -79,7 +79,7 @@ void ContactSolver::differentiate_contacts(int nodes) noexcept {
     const double force = lambda_[k];
     if (force == 0) continue;
     const SimplexHessian h =
-        hessian_of(c, tools_[c.tool].pivots, {x.data(), static_cast<std::size_t>(c.size)}, nullptr);
+        hessian_of(c, path_.tools[c.tool].pivots, {x.data(), static_cast<std::size_t>(c.size)}, nullptr);
     for (int i = 0; i <= c.size; ++i) {
       for (int j = 0; j <= c.size; ++j) {
         second_.curvature.block<3, 3>(3 * slot[i], 3 * slot[j]) += force * h.block<3, 3>(3 * i, 3 * j);
@@ -97,11 +97,11 @@ void ContactSolver::differentiate_friction(int contact, Eigen::Index row,
   std::array<Vec3, 3> x, moved;
   for (int i = 0; i < c.size; ++i) {
     x[i] = deformed_[c.node[i]];
-    moved[i] = x[i] - was_[c.node[i]];
+    moved[i] = x[i] - path_.was[c.node[i]];
   }
   WeightGradient weights;
   const SimplexHessian h =
-      hessian_of(c, tools_[c.tool].pivots, {x.data(), static_cast<std::size_t>(c.size)}, &weights);
+      hessian_of(c, path_.tools[c.tool].pivots, {x.data(), static_cast<std::size_t>(c.size)}, &weights);
   // dn, as d gap / dx_i = -b_i n and the b_i sum to one.
   Eigen::Matrix<double, 3, 12> turn = Eigen::Matrix<double, 3, 12>::Zero();
   for (int i = 0; i < c.size; ++i) turn -= h.middleRows<3>(3 * i);
@@ -136,7 +136,7 @@ void ContactSolver::differentiate_friction(int contact, Eigen::Index row,
 /// False where more is near the tool than there is room for.
 bool ContactSolver::differentiate_considered(const ContactPatch& patch) noexcept {
   collect_nodes(patch.nodes());
-  if (static_cast<int>(second_.nodes.size()) > most_nodes_ + static_cast<int>(tools_.size()) ||
+  if (static_cast<int>(second_.nodes.size()) > most_nodes_ + static_cast<int>(path_.tools.size()) ||
       static_cast<int>(second_.considered.size()) > most_contacts_)
     return false;
   differentiate_contacts(patch.nodes());

@@ -41,7 +41,7 @@ void ContactSolver::assemble_system(const ContactPatch& patch) noexcept {
   const auto count = static_cast<Eigen::Index>(second_.nodes.size()), size = 3 * count;
   second_.compliance.shape(size, size);
   second_.compliance.setZero();
-  const auto tips = static_cast<Eigen::Index>(tools_.size());
+  const auto tips = static_cast<Eigen::Index>(path_.tools.size());
   for (Eigen::Index j = 0; j + tips < count; ++j) {
     for (Eigen::Index i = 0; i + tips < count; ++i) {
       second_.compliance.block<3, 3>(3 * i, 3 * j) =
@@ -164,7 +164,7 @@ bool ContactSolver::solve_on_active_set(const Eigen::Ref<const Eigen::VectorXd>&
 /// False where there are no such forces, or where they are those of a state that is not stable.
 bool ContactSolver::solve_newton_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
                                           Eigen::Ref<Eigen::VectorXd> force) noexcept {
-  if (has_friction_) return solve_contacts(gap, force);
+  if (path_.has_friction) return solve_contacts(gap, force);
   return solve_on_active_set(gap, force) || (second_.system_sign > 0 && solve_contacts(gap, force));
 }
 
@@ -173,13 +173,13 @@ bool ContactSolver::solve_newton_contacts(const Eigen::Ref<const Eigen::VectorXd
 void ContactSolver::consider_near(double change) noexcept {
   second_.considered.clear();
   const auto n = static_cast<Eigen::Index>(contacts_.size());
-  if (!has_friction_) {
+  if (!path_.has_friction) {
     auto slack = slack_.head(n);
     slack = gap_.head(n);
     slack.noalias() += delassus_ * lambda_.head(n);
   }
   for (int k = 0; k < n; ++k) {
-    if (has_friction_ || lambda_[k] > 0 || slack_[k] < kNearby * change) second_.considered.push_back(k);
+    if (path_.has_friction || lambda_[k] > 0 || slack_[k] < kNearby * change) second_.considered.push_back(k);
   }
 }
 
@@ -203,7 +203,7 @@ bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<cons
     gap[row] = gap_[rows * k + row % rows];
   }
   gap -= delassus_.col(n);  // B C~ S u
-  if (has_friction_) {
+  if (path_.has_friction) {
     gap.noalias() += second_.spread.transpose() * local;
     gap.noalias() -= second_.jacobian * local;
   }
@@ -220,7 +220,7 @@ bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<cons
   moved = -response_.col(n).tail(loaded) - local.tail(loaded);
   moved.noalias() += response_.bottomLeftCorner(loaded, n) * lambda;
   load.noalias() = second_.curvature.rightCols(loaded) * moved;
-  if (has_friction_) {
+  if (path_.has_friction) {
     load.noalias() += second_.spread * lambda;
   } else {
     load.noalias() += second_.jacobian.transpose() * lambda;
@@ -228,8 +228,8 @@ bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<cons
   node_force_.head(3 * patch.nodes()).setZero();
   for (Eigen::Index i = 0; i < tip_of(0); ++i)
     node_force_.segment<3>(3 * second_.nodes[i]) = load.segment<3>(3 * i);
-  for (std::size_t t = 0; t < tools_.size(); ++t)
-    tools_[t].tip_load = load.segment<3>(3 * tip_of(static_cast<int>(t)));
+  for (std::size_t t = 0; t < path_.tools.size(); ++t)
+    path_.tools[t].tip_load = load.segment<3>(3 * tip_of(static_cast<int>(t)));
   displace(patch, next);
   return next.allFinite();
 }
@@ -238,7 +238,7 @@ bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<cons
 bool ContactSolver::differentiate_forces(
     Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> change) noexcept {
   const auto n = change.rows();
-  if (!has_friction_) {
+  if (!path_.has_friction) {
     change = -change;
     return gauss_solve(delassus_.leftCols(n), change) != 0;
   }
@@ -265,8 +265,8 @@ Mat3 ContactSolver::tangent(const ContactPatch& patch, int tool) noexcept {
   if (second_.considered.empty()) return Mat3::Zero();
   const Mat3 k = tangent_of_considered(patch, tool);
   if (!k.allFinite()) return Mat3::Zero();
-  second_.has_load_change = !has_friction_ && !k.isZero(0);
-  return has_friction_ ? k : Mat3(0.5 * (k + k.transpose()));
+  second_.has_load_change = !path_.has_friction && !k.isZero(0);
+  return path_.has_friction ? k : Mat3(0.5 * (k + k.transpose()));
 }
 
 Mat3 ContactSolver::tangent_of_considered(const ContactPatch& patch, int tool) noexcept {
@@ -283,7 +283,7 @@ Mat3 ContactSolver::tangent_of_considered(const ContactPatch& patch, int tool) n
   moved.noalias() += response_.leftCols(n) * force_change;
   auto loads = second_.load_change.topRows(size);
   loads.noalias() = second_.curvature * moved;
-  if (has_friction_) {
+  if (path_.has_friction) {
     loads.noalias() += second_.spread * force_change;
   } else {
     loads.noalias() += second_.jacobian.transpose() * force_change;

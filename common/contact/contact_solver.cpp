@@ -107,12 +107,12 @@ ContactSolver::ContactSolver(int max_nodes, int max_triangles, bool friction, in
   second_.active.reserve(static_cast<std::size_t>(max_triangles));
   deformed_.reserve(static_cast<std::size_t>(max_nodes));
   second_.nodes.reserve(static_cast<std::size_t>(max_nodes + tools));
-  tools_.reserve(static_cast<std::size_t>(tools));
+  path_.tools.reserve(static_cast<std::size_t>(tools));
   slack_.resize(rows);
   rendered_.reserve(static_cast<std::size_t>(max_triangles));
   if (!friction) return;
   frames_.reserve(static_cast<std::size_t>(max_triangles));
-  was_.reserve(static_cast<std::size_t>(max_nodes));
+  path_.was.reserve(static_cast<std::size_t>(max_nodes));
   friction_.resize(max_triangles);
 }
 
@@ -131,34 +131,34 @@ double ContactSolver::contact_compliance(const ContactPatch& patch, int nodes) n
 
 /// How far the tip went over the surface at a contact in this increment.
 Vec3 ContactSolver::travel(const Contact& c) const {
-  const Increment& tool = tools_[c.tool];
+  const MovedTool& tool = path_.tools[c.tool];
   Vec3 travel = c.at_tip(tool.tip - tool.tip_was) + tool.turned * c.arm;
-  for (int i = 0; i < c.size; ++i) travel -= c.weight[i] * (deformed_[c.node[i]] - was_[c.node[i]]);
+  for (int i = 0; i < c.size; ++i) travel -= c.weight[i] * (deformed_[c.node[i]] - path_.was[c.node[i]]);
   return travel;
 }
 
 /// The place of a tool's tip among the nodes considered.
 Eigen::Index ContactSolver::tip_of(int tool) const {
-  return static_cast<Eigen::Index>(second_.nodes.size() - tools_.size()) + tool;
+  return static_cast<Eigen::Index>(second_.nodes.size() - path_.tools.size()) + tool;
 }
 
 void ContactSolver::start_increment(const ContactPatch& patch, std::span<const TouchingTool> tools) noexcept {
-  has_friction_ = std::ranges::any_of(tools, [](const TouchingTool& t) { return t.tool->friction > 0; });
+  path_.has_friction = std::ranges::any_of(tools, [](const TouchingTool& t) { return t.tool->friction > 0; });
   rendered_.clear();  // whose nodes are those of another patch
-  tools_.clear();
+  path_.tools.clear();
   for (const TouchingTool& t : tools) {
-    Increment& increment = tools_.emplace_back();
+    MovedTool& increment = path_.tools.emplace_back();
     increment.pivots = t.tool->trocar.has_value();
     increment.radius = t.tool->radius;
     increment.tip_was = t.start.tip;
     // A sphere may spin, a pivoting shaft turns by its tip.
-    if (has_friction_ && t.tool->length > 0 && !t.tool->trocar)
+    if (path_.has_friction && t.tool->length > 0 && !t.tool->trocar)
       increment.turned = Mat3::Identity() - (t.start.q_W * t.pose.q_W.conjugate()).toRotationMatrix();
   }
-  if (!has_friction_) return;
+  if (!path_.has_friction) return;
   assert(second_.spread.size() > 0);  // it was made for friction
   const auto nodes = tools.front().start.nodes;
-  was_.assign(nodes.begin(), nodes.begin() + patch.nodes());
+  path_.was.assign(nodes.begin(), nodes.begin() + patch.nodes());
 }
 
 /// What each tool may touch, with the nodes and tips displaced by `u`, where things still move by `change`
@@ -170,7 +170,7 @@ void ContactSolver::find_contacts(std::span<const TouchingTool> tools,
   for (std::size_t t = 0; t < tools.size(); ++t) {
     const std::size_t first = contacts_.size();
     const Vec3 tip = tools[t].pose.p_W + u.segment<3>(tips + 3 * static_cast<Eigen::Index>(t));
-    tools_[t].tip = tip;
+    path_.tools[t].tip = tip;
     find_contacts_on_patch(deformed_, tools[t].triangles, *tools[t].tool, {tip, tools[t].pose.q_W},
                            margin_for(change, *tools[t].tool), contacts_);
     for (Contact& c : std::span(contacts_).subspan(first)) {
@@ -245,7 +245,7 @@ void ContactSolver::solve(ContactPatch& patch, std::span<const TouchingTool> too
   const int m = patch.nodes();
   ContactForce result;
   result.converged = false;
-  const double radius = std::ranges::min(tools_, {}, &Increment::radius).radius;
+  const double radius = std::ranges::min(path_.tools, {}, &MovedTool::radius).radius;
   auto next = next_.head(u.size()), increment = increment_.head(u.size());
   double change = effort.expected * radius, last_change = radius;
   PlainStep step;
@@ -289,7 +289,7 @@ bool ContactSolver::solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
                                    Eigen::Ref<Eigen::VectorXd> force) noexcept {
   const auto delassus = delassus_.leftCols(gap.size());
   recall(force);
-  if (!has_friction_) return complementarity_.solve(delassus, gap, force);
+  if (!path_.has_friction) return complementarity_.solve(delassus, gap, force);
   auto friction = friction_.head(gap.size() / 3);
   for (Eigen::Index k = 0; k < friction.size(); ++k) friction[k] = contacts_[k].friction;
   return coulomb_.solve(delassus, gap, friction, force);
@@ -317,7 +317,7 @@ void ContactSolver::recall(Eigen::Ref<Eigen::VectorXd> force) const noexcept {
     };
     const auto rendered = std::ranges::find_if(rendered_, same);
     if (rendered == rendered_.end()) continue;
-    if (has_friction_) {
+    if (path_.has_friction) {
       force.segment<3>(3 * k) = frames_[k].transpose() * rendered->force;
     } else {
       force[k] = rendered->force.norm();
@@ -333,14 +333,14 @@ void ContactSolver::solve_linearised(const ContactPatch& patch, Eigen::Ref<Eigen
   store(lambda);
   auto load = node_force_.head(3 * patch.nodes());
   load.setZero();
-  for (Increment& tool : tools_) tool.tip_load.setZero();
+  for (MovedTool& tool : path_.tools) tool.tip_load.setZero();
   for (int row = 0; row < n; ++row) {
     if (lambda[row] == 0) continue;
     const int rows = rows_of_contact();
     const Contact& c = contacts_[row / rows];
     const Vec3 force = lambda[row] * direction(row / rows, row % rows);
     for (int i = 0; i < c.size; ++i) load.segment<3>(3 * c.node[i]) -= c.weight[i] * force;
-    tools_[c.tool].tip_load += c.at_tip(force);
+    path_.tools[c.tool].tip_load += c.at_tip(force);
   }
   displace(patch, next);
 }
@@ -353,8 +353,9 @@ void ContactSolver::displace(const ContactPatch& patch, Eigen::Ref<Eigen::Vector
   for (Eigen::Index k = 0; k < size; ++k) {
     if (node_force_[k] != 0) moved += node_force_[k] * patch.compliance.col(k).head(size);
   }
-  for (std::size_t t = 0; t < tools_.size(); ++t)
-    next.segment<3>(size + 3 * static_cast<Eigen::Index>(t)) = patch.tool_compliance * tools_[t].tip_load;
+  for (std::size_t t = 0; t < path_.tools.size(); ++t)
+    next.segment<3>(size + 3 * static_cast<Eigen::Index>(t)) =
+        patch.tool_compliance * path_.tools[t].tip_load;
 }
 
 void ContactSolver::collect_result(int nodes, const ContactForce& outcome,
@@ -373,7 +374,7 @@ void ContactSolver::collect_result(int nodes, const ContactForce& outcome,
       const Vec3 d = direction(k, row);
       result.force += size * c.at_tip(d);
       // The tip's normals pass through its centre; and what a pivot carries is not felt.
-      if ((row > 0 || c.part != Contact::kTip) && !tools_[c.tool].pivots)
+      if ((row > 0 || c.part != Contact::kTip) && !path_.tools[c.tool].pivots)
         result.torque += c.arm.cross(size * d);
       for (int i = 0; i < c.size; ++i) node_force_.segment<3>(3 * c.node[i]) -= size * c.weight[i] * d;
     }

@@ -137,7 +137,7 @@ class ContactSolver {
   template <class Visit>
   void for_load_changes(const Visit& visit) const {
     if (!second_.has_load_change) return;
-    for (std::size_t i = 0; i + tools_.size() < second_.nodes.size(); ++i)
+    for (std::size_t i = 0; i + path_.tools.size() < second_.nodes.size(); ++i)
       visit(second_.nodes[i], Mat3(second_.load_change.middleRows<3>(3 * static_cast<Eigen::Index>(i))));
   }
 
@@ -153,7 +153,7 @@ class ContactSolver {
   static double contact_compliance(double mean) noexcept;
 
  private:
-  int rows_of_contact() const { return has_friction_ ? 3 : 1; }
+  int rows_of_contact() const { return path_.has_friction ? 3 : 1; }
   Eigen::Index tip_of(int tool) const;
   Vec3 direction(int contact, int row) const;
   Vec3 travel(const Contact& c) const;
@@ -213,17 +213,20 @@ class ContactSolver {
   BoundedMatrix delassus_;  // and B C~ of other loads, to its right
   Eigen::VectorXd gap_, lambda_, slack_, friction_, next_, increment_, node_force_;
   int force_size_ = 0;
-  std::vector<Vec3> was_;  // where the nodes began in the increment in hand, m
   /// A tool in the increment in hand.
-  struct Increment {
+  struct MovedTool {
     bool pivots = false;
     double radius = 0;                                // m
     Vec3 tip_was = Vec3::Zero(), tip = Vec3::Zero();  // where the tip began, and is, m
     Mat3 turned = Mat3::Zero();    // what the tool's turn in the increment did to an arm of now
     Vec3 tip_load = Vec3::Zero();  // N
   };
-  std::vector<Increment> tools_;
-  bool has_friction_ = false;  // one of them
+  /// The increment in hand.
+  struct Increment {
+    std::vector<Vec3> was;  // where the nodes began, m
+    std::vector<MovedTool> tools;
+    bool has_friction = false;  // one of them has
+  } path_;
   /// Second derivatives: the contacts considered, their nodes (the tip last), and matrices over those nodes.
   struct SecondOrder {
     std::vector<int> considered, active, nodes, slot_of_node;
