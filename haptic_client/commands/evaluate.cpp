@@ -209,15 +209,36 @@ void print_reference(const Json& rows, std::size_t begin) {
 }
 
 void print(const Json& rows) {
-  fmt::print("{:20} {:24} {:>5} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>9}\n", "world", "law", "blend",
-             "mean %", "p99 %", "max %", "over %", "jump %", "rough %", "energy %", "ns/tick");
+  struct Column {
+    const char *group, *head, *key;
+    int decimals;
+  };
+  constexpr std::array<Column, 13> kColumns{{{"error, %", "mean", "mean_percent", 3},
+                                             {"of RMS", "p99", "p99_of_rms_percent", 2},
+                                             {"", "max", "max_of_rms_percent", 2},
+                                             {"of peak", "p99", "p99_percent", 2},
+                                             {"", "max", "max_percent", 2},
+                                             {"mean over", "mean", "mean_10ms_percent", 3},
+                                             {"10 ms, %", "p99", "p99_10ms_of_rms_percent", 2},
+                                             {"of RMS", "max", "max_10ms_of_rms_percent", 2},
+                                             {"% of peak", "over", "overshoot_percent", 2},
+                                             {"", "jump", "jump_percent", 2},
+                                             {"", "rough", "rough_percent", 3},
+                                             {"energy", "%", "energy_percent", 2},
+                                             {"time", "ns/tick", "ns_per_tick", 1}}};
+  std::string groups = fmt::format("{:20} {:24} {:>5}", "", "", ""),
+              heads = fmt::format("{:20} {:24} {:>5}", "world", "law", "blend");
+  for (const Column& column : kColumns) {
+    groups += fmt::format(" {:>9}", column.group);
+    heads += fmt::format(" {:>9}", column.head);
+  }
+  fmt::print("{}\n{}\n", groups, heads);
   for (const Json& row : rows) {
-    const auto number = [&](const char* key) { return row[key].get<double>(); };
-    fmt::print("{:20} {:24} {:>5} {:8.3f} {:8.2f} {:8.2f} {:8.2f} {:8.2f} {:8.3f} {:8.2f} {:9.1f}\n",
-               row["world"].get<std::string>(), row["method"].get<std::string>(),
-               row["blended"].get<bool>() ? "yes" : "no", number("mean_percent"), number("p99_percent"),
-               number("max_percent"), number("overshoot_percent"), number("jump_percent"),
-               number("rough_percent"), number("energy_percent"), number("ns_per_tick"));
+    fmt::print("{:20} {:24} {:>5}", row["world"].get<std::string>(), row["method"].get<std::string>(),
+               row["blended"].get<bool>() ? "yes" : "no");
+    for (const Column& column : kColumns)
+      fmt::print(" {:9.{}f}", row[column.key].get<double>(), column.decimals);
+    fmt::print("\n");
   }
   std::fflush(stdout);
 }

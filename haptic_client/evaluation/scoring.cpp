@@ -117,19 +117,19 @@ void Scoring::score_between(const Sample& before, const Sample& after, const Pat
   between.close(ready < waiting_ ? pending(ready).path : now);
   for (; ready > 0; --ready) {
     const Pending& tick = pending(0);
-    const Reference line(between.line(tick.path.t));
+    const ReferenceForce line(between.line(tick.path.t), tick.path.t);
     for (std::size_t i = 0; i < laws_.size(); ++i) paper_[i].add(tick.force[i], line);
     const Vec3 f = between.at(tick.path);
     ++between_[static_cast<std::size_t>(between.kind())];
     if (truth_ == nullptr) score(tick, f, sums);
-    if (own_ && tick.right) own_->add(f, Reference(*tick.right));
+    if (own_ && tick.right) own_->add(f, ReferenceForce(*tick.right, tick.path.t));
     first_ = (first_ + 1) % pending_.size();
     --waiting_;
   }
 }
 
 void Scoring::score(const Pending& tick, const Vec3& right, ErrorSums& sums) noexcept {
-  const Reference reference(right);
+  const ReferenceForce reference(right, tick.path.t);
   newly_scored_.push_back({tick.number, right});
   ++scored_;
   sums.contact += reference.norm > 0 ? 1 : 0;

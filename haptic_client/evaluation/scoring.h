@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "haptic_client/evaluation/error_table.h"
+#include "common/error_table.h"
 #include "haptic_client/evaluation/followed_contact.h"
 #include "haptic_client/evaluation/truth.h"
 #include "haptic_client/extrapolation/force_estimate.h"

@@ -204,6 +204,22 @@ std::string reference_text(const Json& reference) {
   return text.empty() ? "none yet" : text;
 }
 
+struct ScoreColumn {
+  const char* key;
+  int width, decimals;
+};
+constexpr std::array<ScoreColumn, 11> kScoreColumns{{{"mean_percent", 10, 3},
+                                                     {"p99_of_rms_percent", 10, 2},
+                                                     {"max_of_rms_percent", 10, 2},
+                                                     {"p99_percent", 10, 3},
+                                                     {"max_percent", 10, 2},
+                                                     {"mean_10ms_percent", 13, 3},
+                                                     {"p99_10ms_of_rms_percent", 10, 2},
+                                                     {"max_10ms_of_rms_percent", 10, 2},
+                                                     {"paper_mean_percent", 13, 3},
+                                                     {"paper_max_percent", 10, 1},
+                                                     {"paper_max_force_percent", 10, 1}}};
+
 void print_scores(const Json& tool) {
   const Json &methods = tool["methods"], &motion = tool["motion"];
   if (methods.empty()) return;
@@ -216,16 +232,20 @@ void print_scores(const Json& tool) {
     fmt::print("          nothing was touched, so that no law can be wrong\n");
     return print_substitutes(methods);
   }
-  fmt::print("          {:46}{:>33}   {:>36}   {:>7}\n", "", "error, % of RMS | peak | peak",
-             "paper: % of the force on the line", "");
-  fmt::print("          {:46}{:>11}{:>11}{:>11}   {:>12}{:>12}{:>12}   {:>7}\n", "law", "mean", "p99", "max",
-             "average", "maximal", "max force", "ns/tick");
+  std::size_t width = 0;
+  for (const auto& [name, m] : methods.items()) width = std::max(width, row_name(name, m).size());
+  fmt::print("          {:{}}{:>30}{:>20}   {:>30}   {:>30}   {:>7}\n", "", width, "error, % of RMS",
+             "% of peak", "of means over 10 ms, % of RMS", "paper: % of force on the line", "");
+  fmt::print(
+      "          {:{}}{:>10}{:>10}{:>10}{:>10}{:>10}   {:>10}{:>10}{:>10}   {:>10}{:>10}{:>10}   {:>7}\n",
+      "law", width, "mean", "p99", "max", "p99", "max", "mean", "p99", "max", "average", "maximal",
+      "max force", "ns/tick");
   for (const auto& [name, m] : methods.items()) {
-    const auto number = [&m = m](const char* key) { return m[key].get<double>(); };
-    fmt::print("          {:46}{:11.3f}{:11.3f}{:11.2f}   {:12.3f}{:12.1f}{:12.1f}   {:>7}\n",
-               row_name(name, m), number("mean_percent"), number("p99_percent"), number("max_percent"),
-               number("paper_mean_percent"), number("paper_max_percent"), number("paper_max_force_percent"),
-               m["ns_per_tick"].is_null() ? "-" : fmt::format("{:.1f}", number("ns_per_tick")));
+    std::string line = fmt::format("          {:{}}", row_name(name, m), width);
+    for (const ScoreColumn& column : kScoreColumns)
+      line += fmt::format("{:{}.{}f}", m[column.key].get<double>(), column.width, column.decimals);
+    fmt::print("{}   {:>7}\n", line,
+               m["ns_per_tick"].is_null() ? "-" : fmt::format("{:.1f}", m["ns_per_tick"].get<double>()));
   }
   print_substitutes(methods);
 }

@@ -39,8 +39,14 @@ Vec3 force_at(const Trace& reference, double t) {
   return (1 - fraction) * reference.forces[before] + fraction * reference.forces[after];
 }
 
-double rendered_error(const Trace& trace, const Trace& reference, const Trajectory& motion, double latency) {
-  RelativeError error;
+/// Without force below `kContactForce`, as where contact only just ended.
+Vec3 felt(const Vec3& force) {
+  return force.norm() < kContactForce ? Vec3::Zero() : force;
+}
+
+ErrorMetrics rendered_error(const Trace& trace, const Trace& reference, const Trajectory& motion,
+                            double latency) {
+  ErrorTable error(1 / kTick);
   const double end = reference.dt * static_cast<double>(reference.forces.size());
   for (int tick = 0; tick * kTick <= end; ++tick) {
     const double t = tick * kTick;
@@ -51,9 +57,9 @@ double rendered_error(const Trace& trace, const Trace& reference, const Trajecto
       const std::size_t k = std::min(static_cast<std::size_t>(newest), trace.forces.size() - 1);
       force = trace.forces[k] + trace.tangents[k] * (motion.at(t) - trace.places[k]);
     }
-    error.add(force, force_at(reference, t));
+    error.add(felt(force), ReferenceForce(felt(force_at(reference, t)), from_seconds(t)));
   }
-  return error.percent();
+  return error.metrics();
 }
 
 }  // namespace

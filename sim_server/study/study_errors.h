@@ -1,4 +1,5 @@
 #pragma once
+#include "common/error_table.h"
 #include "sim_server/study/study_run.h"
 
 namespace palpate::sim {
@@ -10,10 +11,10 @@ struct StudyErrors {
   double worst_force = 0;  ///< the largest |F - F_ref| of a step, of the same
   /// Root mean square over all sites and steps of |u - u_ref|, of that of u_ref.
   double surface = 0;
-  /// Error of the force that a client renders at 1 kHz, measured as `force`. Each step starts with the tool's
-  /// place then, takes its full `dt`, and its force comes `latency` later. The client extrapolates with its
-  /// tangent: F + K (x(t) - x of the step).
-  double rendered = 0;
+  /// Error of the force that a client renders at 1 kHz, by the definitions of a session. Each step starts
+  /// with the tool's place then, takes its full `dt`, and its force comes `latency` later. The client
+  /// extrapolates with its tangent: F + K (x(t) - x of the step).
+  ErrorMetrics rendered = {};
   std::vector<double> along;  ///< (steps) |F - F_ref|, of the same root mean square
 };
 

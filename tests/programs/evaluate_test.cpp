@@ -130,8 +130,8 @@ TEST_CASE("record: a tool without a motion, and more motions than tools, are tol
 
 TEST_CASE("evaluate: on the liver, 33 Hz and 35 ms, two tangents are far ahead of the paper's laws") {
   const Study study;
-  study.record("truth.pcap", {"--rate", "2000", "--plain"});
-  study.record("slow.pcap", {"--rate", "33.3", "--delay-ms", "35"});
+  study.record("truth.pcap", {"--rate", "2000", "--plain", "--report", study.file("truth.json")});
+  study.record("slow.pcap", {"--rate", "33.3", "--delay-ms", "35", "--report", study.file("slow.json")});
   const auto evaluate = [&](const std::string& out, const std::vector<std::string>& more) {
     std::vector<std::string> arguments{"evaluate", study.file("slow.pcap"), "--out", study.file(out)};
     arguments.insert(arguments.end(), more.begin(), more.end());

@@ -60,6 +60,9 @@ TEST_CASE("study: rows are the same again from nothing, and at once from what wa
   CHECK(
       rows.find("scene,axis,case,model,law,element,mesh,refinements,tetrahedra,nodes,dt_ms,tolerance,"
                 "force_error_percent,worst_force_error_percent,surface_error_percent,rendered_error_percent,"
+                "rendered_p99_percent,rendered_max_percent,rendered_p99_of_rms_percent,"
+                "rendered_max_of_rms_percent,rendered_mean_10ms_percent,rendered_p99_10ms_percent,"
+                "rendered_max_10ms_percent,rendered_p99_10ms_of_rms_percent,rendered_max_10ms_of_rms_percent,"
                 "flagged_steps,state_hash") == 0);
   CHECK(rows.find(",tensor_mass,linear,p1,") != std::string::npos);
   // Again: times are of the traces that are there.

@@ -166,8 +166,8 @@ TEST_CASE("a score against the curve is that against the law itself, and the pap
     if (arrived && k > 0) {
       for (std::size_t i = 0; i < rights.size(); ++i) {
         const double u = static_cast<double>(i) / kSteps;
-        truth.add(givens[i], Reference(rights[i]));
-        line.add(givens[i], Reference(newest + u * (sample.f - newest)));
+        truth.add(givens[i], ReferenceForce(rights[i], {}));
+        line.add(givens[i], ReferenceForce(newest + u * (sample.f - newest), {}));
       }
       rights.clear();
       givens.clear();

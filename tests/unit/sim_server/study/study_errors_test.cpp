@@ -53,13 +53,13 @@ TEST_CASE("what is right but late is felt late, by the step and the link, and he
   // In the mean the place is old by dt + latency and half a step for which it is held.
   const double off = kStiffness * kSpeed * (kDt + kLatency + kDt / 2);
   const double size = kStiffness * kSpeed * 2 / std::sqrt(3.0);
-  CHECK(errors.rendered == Approx(100 * off / size).epsilon(0.03));
+  CHECK(errors.rendered.mean_percent == Approx(100 * off / size).epsilon(0.03));
 }
 
 TEST_CASE("the exact tangent takes what is late away, once the first force is there") {
   const Trace truth = spring(0.001, 1, Mat3::Zero());
   const Mat3 tangent = -kStiffness * Mat3::Identity();
-  const double rendered = errors_of(spring(0.04, 1, tangent), truth, even_way(), 0.01).rendered;
+  const double rendered = errors_of(spring(0.04, 1, tangent), truth, even_way(), 0.01).rendered.mean_percent;
   // Until 2 dt + latency = 0.09 s there is none: the mean of the force there, over all 2 s.
   const double before = kStiffness * kSpeed * 0.09 * 0.09 / 2 / 2;
   CHECK(rendered == Approx(100 * before / (kStiffness * kSpeed * 2 / std::sqrt(3.0))).epsilon(0.05));
