@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 namespace palpate {
 
@@ -37,6 +38,11 @@ double Histogram::quantile(double q) const noexcept {
       return std::min(middle_of(static_cast<int>(i)), static_cast<double>(max_));
   }
   return 0;
+}
+
+std::int64_t Histogram::count_above(std::int64_t value) const noexcept {
+  const auto first = counts_.begin() + bucket_of(std::max<std::int64_t>(value, 0)) + 1;
+  return std::accumulate(first, counts_.end(), std::int64_t{0});
 }
 
 }  // namespace palpate

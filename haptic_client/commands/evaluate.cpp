@@ -161,8 +161,16 @@ Json row_of(const Scoring& scoring, std::size_t law, const LawCost& cost) {
   return row;
 }
 
-void add_rows(Json& rows, const std::string& world, const Evaluation& e, bool with_truth,
+/// Null where they were not measured, as all rows of a table have the same keys.
+void add_jumps(Json& row, const std::string& name, const std::optional<ForceJumps>& jumps) {
+  row.update({{name + "s", nullptr}, {"largest_" + name + "_percent", nullptr}});
+  add_to(row, name, jumps);
+}
+
+void add_rows(Json& rows, const std::string& world, const Evaluation& e, const Truth* truth,
               const std::vector<LawCost>& costs) {
+  const bool with_truth = truth != nullptr;
+  const std::optional<ForceJumps> snaps = with_truth ? truth->snaps() : std::nullopt;
   const std::string between(name_of(e.plain.front().mostly_between()));
   const ErrorMetrics own = e.plain.front().between_metrics();
   for (const bool blended : {false, true}) {
@@ -187,6 +195,8 @@ void add_rows(Json& rows, const std::string& world, const Evaluation& e, bool wi
         row["between_mean_percent"] = beside_truth(own.mean_percent);
         row["between_p99_percent"] = beside_truth(own.p99_percent);
         row["between_max_percent"] = beside_truth(own.max_percent);
+        add_jumps(row, "snap", snaps);
+        add_jumps(row, "unexplained_jump", scoring.unexplained_jumps());
         ++number;
         rows.push_back(row);
       }
@@ -206,6 +216,12 @@ void print_reference(const Json& rows, std::size_t begin) {
         row["between"].get<std::string>(), number("between_mean_percent"), number("between_p99_percent"),
         number("between_max_percent"));
   fmt::print("\n");
+  const auto jumps = [&](const char* count, const char* largest) {
+    return ForceJumps{row[count].get<std::uint64_t>(), number(largest)};
+  };
+  if (!row["snaps"].is_null()) fmt::print("  {}\n", snaps_text(jumps("snaps", "largest_snap_percent")));
+  if (!row["unexplained_jumps"].is_null())
+    fmt::print("  {}\n", unexplained_text(jumps("unexplained_jumps", "largest_unexplained_jump_percent")));
 }
 
 void print(const Json& rows) {
@@ -267,8 +283,8 @@ int evaluate(const EvaluateOptions& options) {
     for (const std::string& law : laws)
       costs.push_back(request_of(law).surface ? cost_on(law, capture, e.run) : cost_of(law));
     const std::size_t begin = rows.size();
-    add_rows(rows, options.world.empty() ? capture.stem().string() : options.world, e, truth.has_value(),
-             costs);
+    add_rows(rows, options.world.empty() ? capture.stem().string() : options.world, e,
+             truth ? &*truth : nullptr, costs);
     print_reference(rows, begin);
   }
   print(rows);

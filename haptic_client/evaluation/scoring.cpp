@@ -11,6 +11,17 @@ namespace palpate::client {
 namespace {
 /// A tick waits for the next sample (an outage at most) to be computed, and as long for it to arrive.
 constexpr double kLongestWait = 3 * to_seconds(kOutage);  // s
+
+PublishedForce published_force(const Sample& sample) noexcept {
+  PublishedForce force{.number = sample.number,
+                       .t = sample.t,
+                       .p = sample.p,
+                       .f = sample.f,
+                       .surface_v = sample.surface_v,
+                       .cuts = sample.cuts};
+  if (sample.at_tool && usable(*sample.at_tool)) force.tangent = sample.at_tool->tangent;
+  return force;
+}
 }  // namespace
 
 ErrorSums& ErrorSums::operator+=(const ErrorSums& other) noexcept {
@@ -67,6 +78,7 @@ ReferenceKind Scoring::mostly_between() const noexcept {
 }
 
 void Scoring::tick(const Vec3& p_W, Time t, const Sample* taken, ErrorSums& sums) noexcept {
+  if (taken != nullptr) jumps_.add(published_force(*taken));
   if (laws_.empty()) return;
   newly_scored_.clear();
   PathTick path{t, p_W};

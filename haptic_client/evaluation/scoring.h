@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/error_table.h"
+#include "common/force_jumps.h"
 #include "haptic_client/evaluation/followed_contact.h"
 #include "haptic_client/evaluation/truth.h"
 #include "haptic_client/extrapolation/force_estimate.h"
@@ -61,6 +62,8 @@ class Scoring {
   double energy_percent(std::size_t law) const noexcept {
     return exchanged_ > 0 ? 100 * excess_[law] / (exchanged_ / 2) : std::numeric_limits<double>::quiet_NaN();
   }
+  /// Returns the jumps between the samples that were taken; nothing where they had no tangents.
+  std::optional<ForceJumps> unexplained_jumps() const noexcept { return jumps_.jumps(); }
   /// Which simpler laws stood in for it, in how many of `ticks()`.
   const Substitutes& substitutes(std::size_t law) const noexcept { return substitutes_[law]; }
   std::uint64_t ticks() const noexcept { return ticks_; }    ///< since the first sample
@@ -93,6 +96,7 @@ class Scoring {
   void wait(const Pending& tick) noexcept;
   const Pending& pending(std::size_t i) const noexcept { return pending_[(first_ + i) % pending_.size()]; }
 
+  UnexplainedJumps jumps_;
   std::vector<std::string> names_;
   std::vector<ForceEstimate> laws_;
   std::vector<ErrorTable> tables_, paper_;                // the latter against the line

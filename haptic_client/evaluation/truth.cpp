@@ -30,6 +30,12 @@ Truth::Truth(const std::filesystem::path& file, const std::function<void(double 
   }
 }
 
+std::optional<ForceJumps> Truth::snaps() const {
+  SnapCounter counter(rate_hz_);
+  for (const Point& point : points_) counter.add(point.f, point.t);
+  return counter.snaps();
+}
+
 std::optional<Vec3> Truth::at(Time t) const noexcept {
   if (t < points_.front().t || t > points_.back().t) return {};
   if (points_[hint_].t > t) hint_ = 0;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/force_jumps.h"
 #include "common/time.h"
 #include "common/types.h"
 
@@ -21,6 +22,8 @@ class Truth {
   /// Times that grow are found at once.
   std::optional<Vec3> at(Time t) const noexcept;
   double rate_hz() const noexcept { return rate_hz_; }
+  /// Snaps of the force over the whole capture; nothing where it has fewer than 2000 samples a second.
+  std::optional<ForceJumps> snaps() const;
 
  private:
   struct Point {

@@ -270,6 +270,10 @@ void print_tool(const Json& tool) {
       "  force   {:.0f} samples, age {:.1f} ms (p50), {:.1f} (p99), {:.1f} (max); largest force {:.2f} N\n",
       number(force, "samples"), number(age, "p50"), number(age, "p99"), number(age, "max"),
       number(force, "max_newton"));
+  if (force.contains("unexplained_jumps")) {
+    fmt::print("          {}\n", unexplained_text({force["unexplained_jumps"].get<std::uint64_t>(),
+                                                   number(force, "largest_unexplained_jump_percent")}));
+  }
   if (!force["stand_ins"].empty() || number(force, "surface_pages") > 0) {
     fmt::print("  law     {}; {:.0f} pages of the surface came\n",
                !force["stand_ins"].empty()
@@ -329,18 +333,16 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
   const auto pairs = static_cast<double>(stats.sample_pairs);
   Json rendered = at_work_report(config.method, stats.substitutes, stats.published);
   rendered.update(error_budget_report(config.method, observation));
+  Json force = {{"samples", stats.samples},           {"overtaken", stats.overtaken},
+                {"stepped_down", stats.stepped_down}, {"stand_ins", substitutes_report(stats.substitutes)},
+                {"surface_pages", stats.pages},       {"age_ms", quantiles(stats.age_ns, 1e6)},
+                {"max_newton", stats.max_newton}};
+  add_to(force, "unexplained_jump", observation.scoring().unexplained_jumps());
   return {{"device", config.device.name},
           {"port", config.device.port},
           {"method", config.method},
           {"rendered", rendered},
-          {"force",
-           {{"samples", stats.samples},
-            {"overtaken", stats.overtaken},
-            {"stepped_down", stats.stepped_down},
-            {"stand_ins", substitutes_report(stats.substitutes)},
-            {"surface_pages", stats.pages},
-            {"age_ms", quantiles(stats.age_ns, 1e6)},
-            {"max_newton", stats.max_newton}}},
+          {"force", std::move(force)},
           {"motion",
            {{"mean_speed_m_s", per(stats.path_m, stats.path_s)},
             {"max_speed_m_s", stats.max_speed},

@@ -85,7 +85,8 @@ FIGURES_MOTION, FIGURES_SECONDS, FIGURES_FROM = "mix", 5.5, 1.5
 
 KEYS = ("world", "motion", "speed_m_s", "rate_hz", "delay_ms", "reference", "method", "blended", "mean_percent",
         "p99_percent", "max_percent", "p99_of_rms_percent", "max_of_rms_percent", "mean_10ms_percent", "p99_10ms_percent",
-        "max_10ms_percent", "p99_10ms_of_rms_percent", "max_10ms_of_rms_percent", "jump_percent", "rough_percent",
+        "max_10ms_percent", "p99_10ms_of_rms_percent", "max_10ms_of_rms_percent", "snaps", "largest_snap_percent",
+        "unexplained_jumps", "largest_unexplained_jump_percent", "jump_percent", "rough_percent",
         "exceed_percent", "paper_mean_percent", "paper_max_percent", "paper_max_force_percent", "energy_percent",
         "ns_per_tick", "ns_per_tick_p99", "ns_per_arrival", "bytes_per_sample", "model_bytes")
 

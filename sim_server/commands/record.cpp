@@ -136,25 +136,28 @@ Json times_ms(const Histogram& ns) {
 Json make_report(const RecordOptions& options, const VirtualSession& session, double ticks_hz,
                  const protocol::CaptureWriter& capture, const Simulation& simulation, double virtual_s) {
   const VirtualSessionStats& stats = session.stats();
-  return {{"scene", options.scene.string()},
-          {"trajectory", options.trajectories[options.tool - 1].string()},
-          {"tool", options.tool},
-          {"rate_hz", options.rate_hz},
-          {"ticks_hz", ticks_hz},
-          {"delay_ms", options.delay_ms},
-          {"virtual_seconds", virtual_s},
-          {"packets", capture.packets()},
-          {"bytes", capture.bytes()},
-          {"tool_states", stats.tool_states},
-          {"force_samples", stats.force_samples},
-          {"contact_steps", stats.in_contact},
-          {"contact_step_ms", times_ms(stats.contact_step_ns)},
-          {"late", stats.late},
-          {"flagged", stats.flagged},
-          {"flagged_by", simulation.flagged().to_json()},
-          {"max_newton", stats.max_newton},
-          {"resection", resection_report(simulation)},
-          {"state_hash", fmt::format("{:016x}", simulation.state_hash())}};
+  Json report = {{"scene", options.scene.string()},
+                 {"trajectory", options.trajectories[options.tool - 1].string()},
+                 {"tool", options.tool},
+                 {"rate_hz", options.rate_hz},
+                 {"ticks_hz", ticks_hz},
+                 {"delay_ms", options.delay_ms},
+                 {"virtual_seconds", virtual_s},
+                 {"packets", capture.packets()},
+                 {"bytes", capture.bytes()},
+                 {"tool_states", stats.tool_states},
+                 {"force_samples", stats.force_samples},
+                 {"contact_steps", stats.in_contact},
+                 {"contact_step_ms", times_ms(stats.contact_step_ns)},
+                 {"late", stats.late},
+                 {"flagged", stats.flagged},
+                 {"flagged_by", simulation.flagged().to_json()},
+                 {"max_newton", stats.max_newton},
+                 {"resection", resection_report(simulation)},
+                 {"state_hash", fmt::format("{:016x}", simulation.state_hash())}};
+  add_to(report, "snap", stats.snaps.snaps());
+  add_to(report, "unexplained_jump", stats.jumps.jumps());
+  return report;
 }
 
 /// Figures of a recording whose `virtual_s` of virtual time took `took` (both s).
@@ -169,6 +172,8 @@ void print_recording(const RecordOptions& options, const VirtualSessionStats& st
       stats.in_contact, 1e-6 * stats.contact_step_ns.quantile(0.5),
       1e-6 * stats.contact_step_ns.quantile(0.99), stats.flagged,
       stats.flagged > 0 ? " (" + simulation.flagged().to_text() + ")" : "", stats.max_newton);
+  if (const auto snaps = stats.snaps.snaps()) fmt::print("            {}\n", snaps_text(*snaps));
+  if (const auto jumps = stats.jumps.jumps()) fmt::print("            {}\n", unexplained_text(*jumps));
   if (options.real_time)
     fmt::print("            {} of the deadlines of {:g} Hz passed over, as steps took too long\n", stats.late,
                options.rate_hz);

@@ -101,13 +101,13 @@ Json tools_report(const SimLoopStats& stats, const NetLink& link, const Scene& s
                   const ErrorOfForce& errors) {
   Json tools = Json::array();
   for (std::size_t i = 0; i < scene.tools.size(); ++i) {
-    tools.push_back({{"radius_m", scene.tools[i].shape.radius},
-                     {"max_newton", stats.tools[i].max_newton},
-                     {"contact_steps", stats.tools[i].contact_steps},
-                     {"beyond_steps", stats.tools[i].beyond_steps},
-                     {"missed_by_m", missed_by(stats.tools[i])},
-                     {"rendered", rendered_report(errors, i)},
-                     {"sessions", link.tools[i].so_far.load()}});
+    Json tool = {
+        {"radius_m", scene.tools[i].shape.radius},       {"max_newton", stats.tools[i].max_newton},
+        {"contact_steps", stats.tools[i].contact_steps}, {"beyond_steps", stats.tools[i].beyond_steps},
+        {"missed_by_m", missed_by(stats.tools[i])},      {"rendered", rendered_report(errors, i)},
+        {"sessions", link.tools[i].so_far.load()}};
+    add_to(tool, "unexplained_jump", stats.tools[i].jumps.jumps());
+    tools.push_back(std::move(tool));
   }
   return tools;
 }
@@ -181,6 +181,13 @@ void print_summary(const Json& report, const Simulation& simulation) {
         i + 1, 1e3 * missed.get<double>());
   }
   print_errors(report);
+  for (std::size_t i = 0; i < report["tools"].size(); ++i) {
+    const Json& tool = report["tools"][i];
+    if (!tool.contains("unexplained_jumps")) continue;
+    fmt::print("            tool {}: {}\n", i + 1,
+               unexplained_text({tool["unexplained_jumps"].get<std::uint64_t>(),
+                                 tool["largest_unexplained_jump_percent"].get<double>()}));
+  }
   std::fflush(stdout);
 }
 

@@ -196,6 +196,7 @@ int study(const StudyOptions& options, const CacheOptions& cache) {
   result.reference = plan.reference.name();
   result.check = plan.check.name();
   result.truth = reference;
+  if (std::ranges::none_of(scene.fixed, &FixedRegion::moves)) result.jumps = unexplained_jumps(reference);
   for (std::size_t k = 0; k < plan.cases.size(); ++k) {
     const StudyCase& one = plan.cases[k];
     const double fraction = 0.2 + 0.8 * static_cast<double>(k) / static_cast<double>(plan.cases.size());

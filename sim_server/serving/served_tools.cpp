@@ -78,6 +78,17 @@ Bend bend_between(const ToolPath::Point& before, const ToolPath::Point& now) noe
 
 }  // namespace
 
+PublishedForce published_force(const ForceSample& sample) noexcept {
+  PublishedForce force{.number = sample.number,
+                       .t = Time{sample.tool_t_ns},
+                       .p = sample.p_W,
+                       .f = sample.f_W,
+                       .surface_v = sample.surface_v_W + sample.others.v_W,
+                       .cuts = sample.cuts};
+  if ((sample.flags & ForceSample::kHasTangent) != 0) force.tangent = sample.at_tool.tangent;
+  return force;
+}
+
 ServedTools::ServedTools(Simulation& simulation, const ErrorOfForce* errors)
     : simulation_(simulation),
       errors_(errors),

@@ -2,6 +2,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/force_jumps.h"
 #include "protocol/messages.h"
 #include "sim_server/serving/relaxation_teller.h"
 #include "sim_server/serving/surface_pager.h"
@@ -19,6 +20,9 @@ struct SessionInput {
   bool fresh = false;
   ToolPath path{};  ///< that led there; of use where contact is solved several times a step
 };
+
+/// Returns the part of a sample that tells the force and how it changes nearby.
+PublishedForce published_force(const protocol::ForceSample& sample) noexcept;
 
 /// The simulation as clients meet it, each holding a tool in a session of its own: poses in, answers out. No
 /// clock, thread or socket, so it runs the same in the loop and in virtual time. One thread; no allocation

@@ -45,6 +45,7 @@ struct ToolStats {
   std::uint64_t contact_steps = 0;
   std::uint64_t beyond_steps = 0;  ///< with its tip beyond its workspace or cone, where nothing is built
   double max_newton = 0;
+  UnexplainedJumps jumps{};           ///< between the samples of its sessions
   std::optional<double> nearest_m{};  ///< before it first touched, looked at ten times a second
 };
 

@@ -48,7 +48,9 @@ VirtualSession::VirtualSession(Simulation& simulation, std::span<const Trajector
       client_pages_{.surface = 0,
                     .near = protocol::NearTiles(served_.pager(link.tool)->state().vertices),
                     .sent = {},
-                    .has = {}} {}
+                    .has = {}} {
+  stats_.snaps = SnapCounter(link.rate_hz);
+}
 
 Time VirtualSession::time_of(std::uint64_t k) const {
   return from_seconds(static_cast<double>(k) / link_.ticks_hz);
@@ -127,6 +129,8 @@ void VirtualSession::step(const ToolState& state, double steps_due) {
   for (const ServedTools::Outcome& outcome : outcomes)
     stats_.max_newton = std::max(stats_.max_newton, outcome.force.force.norm());
   const ServedTools::Outcome& outcome = outcomes[link_.tool];
+  stats_.snaps.add(outcome.force.force, answered_);
+  stats_.jumps.add(published_force(*outcome.answer));
   const Time done = link_.clock == nullptr ? answered_ : pass(begun, link_.clock->took());
   in_transit_.push_back({done + link_.delay, *outcome.answer});
   in_transit_.back().sample.tool = state.tool;

@@ -1,6 +1,7 @@
 #pragma once
 #include <deque>
 
+#include "common/force_jumps.h"
 #include "common/histogram.h"
 #include "common/trajectory.h"
 #include "protocol/capture.h"
@@ -36,6 +37,8 @@ struct VirtualSessionStats {
   std::uint64_t tool_states = 0, force_samples = 0, in_contact = 0, flagged = 0;
   std::uint64_t late = 0;  ///< deadlines passed over because a step took too long
   double max_newton = 0;
+  SnapCounter snaps{0};       ///< of the force of the session's tool, of steps at 2000 Hz or more
+  UnexplainedJumps jumps;     ///< between the samples of the session
   Histogram contact_step_ns;  ///< processor time of the steps in contact, with all that the client asks for
 };
 

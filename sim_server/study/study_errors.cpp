@@ -64,6 +64,18 @@ ErrorMetrics rendered_error(const Trace& trace, const Trace& reference, const Tr
 
 }  // namespace
 
+std::optional<ForceJumps> unexplained_jumps(const Trace& trace) {
+  UnexplainedJumps jumps;
+  for (std::size_t k = 0; k < trace.forces.size(); ++k) {
+    jumps.add({.number = k + 1,
+               .t = from_seconds(static_cast<double>(k + 1) * trace.dt),
+               .p = trace.places[k],
+               .f = trace.forces[k],
+               .tangent = trace.tangents[k]});
+  }
+  return jumps.jumps();
+}
+
 StudyErrors errors_of(const Trace& trace, const Trace& reference, const Trajectory& motion, double latency) {
   RelativeError force;
   double off = 0, moved = 0;

@@ -1,5 +1,6 @@
 #pragma once
 #include "common/error_table.h"
+#include "common/force_jumps.h"
 #include "sim_server/study/study_run.h"
 
 namespace palpate::sim {
@@ -17,6 +18,10 @@ struct StudyErrors {
   ErrorMetrics rendered = {};
   std::vector<double> along;  ///< (steps) |F - F_ref|, of the same root mean square
 };
+
+/// Returns the jumps between the steps of a trace that its tangents do not explain. Only for supports that
+/// rest: a trace does not hold how the tissue moves by itself.
+std::optional<ForceJumps> unexplained_jumps(const Trace& trace);
 
 /// Every step of the trace must end where one of the reference does, but for rounding; `latency` in s.
 StudyErrors errors_of(const Trace& trace, const Trace& reference, const Trajectory& motion, double latency);

@@ -126,6 +126,7 @@ std::string to_text(const StudyResult& result) {
       "  {:<9} {:<58} {:>10} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>8}\n",
       result.reference, result.check, result.own.force, result.own.surface, "axis", "case", "tetrahedra",
       "force %", "worst %", "surface %", "felt %", "step ms", "set-up s", "peak MB");
+  if (result.jumps) text.insert(text.find('\n') + 1, unexplained_text(*result.jumps) + "\n");
   for (const StudyRow& row : result.rows) {
     text += fmt::format(
         "{} {:<9} {:<58} {:>10} {:>9.3g} {:>9.3g} {:>9.3g} {:>9.3g} {:>9.3g} {:>9.3g} {:>8.0f}{}\n",
@@ -175,14 +176,14 @@ void write_study(const StudyOptions& options, const StudyResult& result) {
   write_csv(options.out / "timing.csv", csv_of(times));
   write_csv(options.out / "along.csv", csv_of(along));
   write_csv(options.out / "reference.csv", csv_of(steps_of(result.truth)));
-  write_json(options.out / "summary.json", {{"reference",
-                                             {{"case", result.reference},
-                                              {"check", result.check},
-                                              {"force_error_percent", result.own.force},
-                                              {"surface_error_percent", result.own.surface}}},
-                                            {"latency_ms", options.latency_ms},
-                                            {"rows", all},
-                                            {"refused", refused}});
+  Json reference = {{"case", result.reference},
+                    {"check", result.check},
+                    {"force_error_percent", result.own.force},
+                    {"surface_error_percent", result.own.surface}};
+  add_to(reference, "unexplained_jump", result.jumps);
+  write_json(
+      options.out / "summary.json",
+      {{"reference", reference}, {"latency_ms", options.latency_ms}, {"rows", all}, {"refused", refused}});
 }
 
 }  // namespace palpate::sim

@@ -22,6 +22,7 @@ struct StudyResult {
   std::vector<StudyRow> rows;
   std::string reference = {}, check = {};
   Trace truth = {};                                               ///< of the reference
+  std::optional<ForceJumps> jumps = {};                           ///< between its steps
   std::vector<std::pair<std::string, std::string>> refused = {};  ///< case, why
 };
 

@@ -160,10 +160,23 @@ TEST_CASE("evaluate: on the liver, 33 Hz and 35 ms, two tangents are far ahead o
     CHECK(10 * one["between_" + std::string(key)].get<double>() <
           row(rows, "local_contact", false)[key].get<double>());
   }
+  // The server counts jumps in its own forces as the client does in what it got of them.
+  const Json dense = read_json(study.folder.path() / "truth.json"),
+             sparse = read_json(study.folder.path() / "slow.json");
+  CHECK(one["snaps"] == dense["snaps"]);
+  CHECK(one["largest_snap_percent"] == dense["largest_snap_percent"]);
+  CHECK_FALSE(dense.contains("unexplained_jumps"));
+  CHECK_FALSE(sparse.contains("snaps"));
+  CHECK(one["unexplained_jumps"] == sparse["unexplained_jumps"]);
+  CHECK(one["largest_unexplained_jump_percent"].get<double>() > 0);
+  CHECK(one["max_10ms_percent"] < one["max_percent"]);
+  CHECK(one["max_of_rms_percent"].get<double>() / one["max_percent"].get<double>() ==
+        Approx(one["p99_of_rms_percent"].get<double>() / one["p99_percent"].get<double>()));
   // Without a truth the force between the samples is the reference: as in a replay.
   const Json curves = evaluate("c", {"--method", "constant"}), solved = evaluate("d", {});
   CHECK(curves.size() == 2);
   CHECK(curves[0]["reference"] == "hermite");
+  CHECK(curves[0]["snaps"].is_null());
   CHECK(solved[0]["reference"] == "contact");
   for (const char* law : {"constant", "linear_position", "two_tangents", "local_contact"}) {
     CAPTURE(law);

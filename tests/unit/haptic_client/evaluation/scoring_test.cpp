@@ -98,6 +98,29 @@ TEST_CASE("on a closed path a force that comes late creates energy") {
         Approx(100 * std::numbers::pi * std::sin(w * late * to_seconds(kTick))).epsilon(0.01));
 }
 
+TEST_CASE("jumps between samples are counted, whether laws are scored or not, where they have tangents") {
+  const auto jumps_of = [](const std::vector<std::string>& laws, bool tangents) {
+    Scoring scoring(laws, 500, "test");
+    ErrorSums sums;
+    for (std::uint64_t n = 1; n <= 10; ++n) {  // a spring of 100 N/m, and from the sixth on 1 N across
+      const Time t = static_cast<int>(n) * 10 * kTick;
+      const double depth = 0.01 * static_cast<double>(n);
+      Sample sample{n, t, {-depth, 0, 0}, {100 * depth, n > 5 ? 1.0 : 0.0, 0}};
+      if (tangents)
+        sample.at_tool = Linearisation{
+            .p_W = sample.p, .f_W = sample.f, .tangent = -100 * Mat3::Identity(), .normal_W = Vec3::UnitX()};
+      scoring.tick(sample.p, t, &sample, sums);
+    }
+    return scoring.unexplained_jumps();
+  };
+  for (const auto& laws : {std::vector<std::string>{}, kLaws}) {
+    REQUIRE(jumps_of(laws, true));
+    CHECK(jumps_of(laws, true)->count == 1);
+    CHECK(jumps_of(laws, true)->largest_percent == Approx(100 / std::hypot(10, 1)));
+    CHECK_FALSE(jumps_of(laws, false));
+  }
+}
+
 TEST_CASE("nothing is scored across an outage") {
   Scoring scoring({"constant"}, 500, "test");
   ErrorSums sums;

@@ -65,6 +65,20 @@ TEST_CASE("the exact tangent takes what is late away, once the first force is th
   CHECK(rendered == Approx(100 * before / (kStiffness * kSpeed * 2 / std::sqrt(3.0))).epsilon(0.05));
 }
 
+TEST_CASE("errors of what is rendered are told by peak and by root mean square, and jumps of a trace") {
+  const Mat3 tangent = -kStiffness * Mat3::Identity();
+  Trace trace = spring(0.01, 1, tangent);
+  CHECK(unexplained_jumps(trace)->count == 0);
+  const ErrorMetrics rendered = errors_of(trace, spring(0.001, 1, tangent), even_way(), 0.01).rendered;
+  // Without force until 0.03 s: wrong by all of it there, of a ramp with the peak at 2 s.
+  CHECK(rendered.max_percent == Approx(100 * 0.029 / 2).epsilon(0.01));
+  CHECK(rendered.max_of_rms_percent == Approx(std::sqrt(3) * rendered.max_percent).epsilon(0.01));
+  CHECK(rendered.mean_10ms.max_percent == Approx(100 * 0.0245 / 2).epsilon(0.01));
+  for (std::size_t k = 100; k < trace.forces.size(); ++k) trace.forces[k] += Vec3(3, 0, 0);
+  CHECK(unexplained_jumps(trace)->count == 1);
+  CHECK(unexplained_jumps(trace)->largest_percent == Approx(100 * 3 / std::hypot(3, 12)));
+}
+
 TEST_CASE("a trace reads back as it was, and half of one is none") {
   const test::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "one.trace";
