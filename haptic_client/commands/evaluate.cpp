@@ -14,8 +14,8 @@
 #include "haptic_client/commands/overrides.h"
 #include "haptic_client/evaluation/captured_session.h"
 #include "haptic_client/evaluation/law_cost.h"
+#include "haptic_client/evaluation/scaled_compliance.h"
 #include "haptic_client/evaluation/scoring.h"
-#include "haptic_client/evaluation/told_compliance.h"
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "haptic_client/pipeline/pipeline.h"
 
@@ -92,7 +92,7 @@ struct KnownSurface {
 /// see the surface.
 void take_pages(const CapturedTick& tick, double compliance, KnownSurface& surface, Evaluation& e) {
   for (const protocol::SurfacePage& page : tick.pages)
-    surface.model.take(with_compliance(page, surface.pages, compliance));
+    surface.model.take(with_scaled_compliance(page, surface.pages, compliance));
   e.model_bytes += kPageBytes * static_cast<double>(tick.pages.size());
 }
 

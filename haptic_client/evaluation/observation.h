@@ -2,8 +2,8 @@
 #include <vector>
 
 #include "common/timeline.h"
+#include "haptic_client/evaluation/published_errors.h"
 #include "haptic_client/evaluation/scoring.h"
-#include "haptic_client/evaluation/told_errors.h"
 #include "haptic_client/pipeline/pipeline.h"
 
 namespace palpate::client {

@@ -7,9 +7,9 @@
 #include "haptic_client/extrapolation/force_estimate.h"
 #include "haptic_client/extrapolation/surface_model.h"
 #include "haptic_client/pipeline/page_pace.h"
-#include "haptic_client/safety/felt_share.h"
 #include "haptic_client/safety/limiter.h"
 #include "haptic_client/safety/passivity.h"
+#include "haptic_client/safety/rendered_fraction.h"
 #include "haptic_client/safety/watchdog.h"
 #include "protocol/messages.h"
 

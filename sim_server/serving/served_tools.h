@@ -4,7 +4,7 @@
 
 #include "common/force_jumps.h"
 #include "protocol/messages.h"
-#include "sim_server/serving/relaxation_teller.h"
+#include "sim_server/serving/relaxation_publisher.h"
 #include "sim_server/serving/surface_pager.h"
 #include "sim_server/serving/tool_path.h"
 #include "sim_server/simulation/error_of_force.h"
@@ -72,7 +72,7 @@ class ServedTools {
   std::vector<std::shared_ptr<SurfacePager>> pagers_;  // of each tool
   std::vector<protocol::SurfaceState> surfaces_;       // of each tool; version 0: none
   std::uint32_t published_version_ = 0;
-  std::optional<RelaxationTeller> relaxation_;  // where modes are told, of one tool, that relax
+  std::optional<RelaxationPublisher> relaxation_;  // where modes are told, of one tool, that relax
   std::vector<Holder> holders_;
   std::vector<std::vector<PathPoint>> paths_;  // within a step, of each tool
   std::vector<ToolInput> inputs_;

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "haptic_client/evaluation/told_compliance.h"
+#include "haptic_client/evaluation/scaled_compliance.h"
 #include "sim_server/mesh/shapes.h"
 #include "sim_server/models/deformation_models.h"
 #include "sim_server/tissue/contact_instants.h"
@@ -154,7 +154,7 @@ struct PressAndSlide::Block {
       if ((state.flags & protocol::ToolState::kAsksPages) == 0) return found;
       for (const std::uint32_t number : state.pages) {
         if (protocol::SurfacePage page; pager->page(number, page))
-          found.push_back(client::with_compliance(page, entire, compliance));
+          found.push_back(client::with_scaled_compliance(page, entire, compliance));
       }
       return found;
     };

@@ -1,5 +1,5 @@
-#include "haptic_client/safety/felt_share.h"
 #include "haptic_client/safety/limiter.h"
+#include "haptic_client/safety/rendered_fraction.h"
 #include "haptic_client/safety/watchdog.h"
 #include "tests/support/catch.h"
 #include "tests/support/random.h"

@@ -1,4 +1,4 @@
-#include "haptic_client/evaluation/told_errors.h"
+#include "haptic_client/evaluation/published_errors.h"
 
 #include <algorithm>
 

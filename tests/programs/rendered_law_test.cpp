@@ -49,7 +49,7 @@ struct Replayed {
 
 }  // namespace
 
-TEST_CASE("felt law: where samples bring the triplet alone, everything names the law that stood in") {
+TEST_CASE("rendered law: where samples bring the triplet alone, everything names the law that stood in") {
   const Replayed r({"--plain"});
   CHECK(r.tool["rendered"]["law"] == "learned_stiffness");
   CHECK(r.tool["rendered"]["laws"] == Json{{"learned_stiffness", 1.0}});
@@ -63,7 +63,7 @@ TEST_CASE("felt law: where samples bring the triplet alone, everything names the
              Catch::Contains("local_contact (as learned_stiffness 100 %)"));
 }
 
-TEST_CASE("felt law: where it was itself, its share is told, and all shares make one") {
+TEST_CASE("rendered law: where it was itself, its share is told, and all shares make one") {
   const Replayed r({});
   CHECK(r.tool["rendered"]["law"] == "local_contact");
   double sum = 0;

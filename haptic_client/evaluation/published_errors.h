@@ -9,7 +9,7 @@ namespace palpate::client {
 class PublishedError {
  public:
   void add(const DiscretisationError& error, double weight) noexcept;
-  /// Unknown while no sample told it.
+  /// Unknown while no sample had it.
   DiscretisationError mean() const noexcept;
 
  private:

@@ -7,13 +7,13 @@
 
 namespace palpate::sim {
 
-/// Tells a client what a tissue that relaxes remembers (`protocol::RelaxedState`), in as many parts as it
-/// takes, one with each sample: the modes in turn, and in turn the vertices whose force is not forgotten. One
-/// thread; only the constructor allocates.
-class RelaxationTeller {
+/// Publishes the memory of a tissue that relaxes (`protocol::RelaxedState`) in parts, one with each sample:
+/// the modes in turn, and in turn the vertices with a remaining force. One thread; only the constructor
+/// allocates.
+class RelaxationPublisher {
  public:
   /// `vertices`: of the surface, of each vertex of the model that clients have (`SurfacePager::vertices`).
-  RelaxationTeller(const PublishedModes& modes, std::span<const int> vertices);
+  RelaxationPublisher(const PublishedModes& modes, std::span<const int> vertices);
 
   /// Appends the next part to a sample that has all others, as long as a datagram has room for it.
   void report(const ModalMotion& state, protocol::ForceSample& sample) noexcept;

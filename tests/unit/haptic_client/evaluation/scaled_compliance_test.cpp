@@ -1,4 +1,4 @@
-#include "haptic_client/evaluation/told_compliance.h"
+#include "haptic_client/evaluation/scaled_compliance.h"
 
 #include "tests/support/catch.h"
 
@@ -7,12 +7,12 @@ using namespace palpate::client;
 using protocol::SurfacePage;
 using protocol::SurfacePages;
 
-TEST_CASE("a tissue told for twice as compliant: tiles are doubled, modes slower by the root of two") {
+TEST_CASE("a surface published as twice as compliant: tiles are doubled, modes slower by the root of two") {
   const SurfacePages pages{.vertices = 12, .triangles = 20, .modes = 16};
   const auto published = [&](std::uint32_t number) {
     SurfacePage page{.page = number};
     page.values.fill(3.0F);
-    return with_compliance(page, pages, 2).values;
+    return with_scaled_compliance(page, pages, 2).values;
   };
   const std::uint32_t tiles = pages.first_tile(), spectrum = pages.spectrum();
   REQUIRE(spectrum - tiles == 6);  // three clusters

@@ -1,5 +1,5 @@
 // What relaxes is told in parts: none makes a datagram too long, and after some samples all has been told.
-#include "sim_server/serving/relaxation_teller.h"
+#include "sim_server/serving/relaxation_publisher.h"
 
 #include <numeric>
 #include <set>
@@ -39,7 +39,8 @@ ForceSample longest_sample(int modes) {
 }  // namespace
 
 TEST_CASE(
-    "relaxation teller: in whatever many terms, all modes and vertices of note are told, a part each time") {
+    "relaxation publisher: in whatever many terms, all modes and vertices of note are told, a part each "
+    "time") {
   for (const int count : {1, 40, kMaxPublishedModes}) {
     for (const int terms : {1, 2, kMostRelaxations}) {
       CAPTURE(count, terms);
@@ -47,7 +48,7 @@ TEST_CASE(
       REQUIRE(modes.published == count);
       std::vector<int> vertices(kVertices);
       std::iota(vertices.rbegin(), vertices.rend(), 0);  // vertex i of the model is one of the surface
-      RelaxationTeller teller(modes, vertices);
+      RelaxationPublisher publisher(modes, vertices);
       ModalMotion state;
       state.z = Eigen::MatrixXd::Random(count, terms);
       state.psi.assign(static_cast<std::size_t>(kVertices * terms), Vec3::Zero());
@@ -63,7 +64,7 @@ TEST_CASE(
         REQUIRE(samples < 40);
         ForceSample sample = longest_sample(count);
         const test::AllocationGuard guard;
-        teller.report(state, sample);
+        publisher.report(state, sample);
         REQUIRE(guard.count() == 0);
         std::array<std::byte, 2 * protocol::kMaxDatagram> bytes;
         const std::size_t size = protocol::encode({1, 1}, sample, bytes);

@@ -1,4 +1,4 @@
-#include "sim_server/serving/relaxation_teller.h"
+#include "sim_server/serving/relaxation_publisher.h"
 
 #include <algorithm>
 #include <array>
@@ -15,10 +15,10 @@ constexpr std::size_t kReal = 4;  // bytes
 
 }  // namespace
 
-RelaxationTeller::RelaxationTeller(const PublishedModes& modes, std::span<const int> vertices)
+RelaxationPublisher::RelaxationPublisher(const PublishedModes& modes, std::span<const int> vertices)
     : modes_(modes), terms_(modes.relaxations.size()), vertices_(vertices.begin(), vertices.end()) {}
 
-void RelaxationTeller::report(const ModalMotion& state, protocol::ForceSample& sample) noexcept {
+void RelaxationPublisher::report(const ModalMotion& state, protocol::ForceSample& sample) noexcept {
   sample.flags |= protocol::ForceSample::kHasRelaxed;
   RelaxedState& published = sample.relaxed = {.terms = static_cast<std::uint8_t>(terms_)};
   for (std::size_t j = 0; j < terms_; ++j) {
@@ -36,8 +36,8 @@ void RelaxationTeller::report(const ModalMotion& state, protocol::ForceSample& s
   publish_vertices(state, room - published.count * terms_ * kReal, published);
 }
 
-void RelaxationTeller::publish_modes(const ModalMotion& state, std::size_t room,
-                                     RelaxedState& published) noexcept {
+void RelaxationPublisher::publish_modes(const ModalMotion& state, std::size_t room,
+                                        RelaxedState& published) noexcept {
   const auto modes = static_cast<std::size_t>(state.z.rows());
   if (next_mode_ >= modes) next_mode_ = 0;
   const std::size_t most = std::min(room / kReal, RelaxedState::kMostAmplitudes) / terms_,
@@ -51,8 +51,8 @@ void RelaxationTeller::publish_modes(const ModalMotion& state, std::size_t room,
 }
 
 /// Once around at most, on from the last one that was told.
-void RelaxationTeller::publish_vertices(const ModalMotion& state, std::size_t room,
-                                        RelaxedState& published) noexcept {
+void RelaxationPublisher::publish_vertices(const ModalMotion& state, std::size_t room,
+                                           RelaxedState& published) noexcept {
   const auto psi = [&](std::size_t number, std::size_t term) -> const Vec3& {
     return state.psi[static_cast<std::size_t>(vertices_[number]) * terms_ + term];
   };

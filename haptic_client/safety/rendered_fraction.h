@@ -3,8 +3,8 @@
 
 namespace palpate::client {
 
-/// Watches how much of the law's force is felt, so that somebody is told when the safety chain takes most of
-/// it for long. Pure; haptic thread only.
+/// Measures which fraction of the law's force is rendered, for a warning when the safety chain removes most
+/// of it for long. Pure; haptic thread only.
 class RenderedFraction {
  public:
   static constexpr double kHalf = 0.5;     ///< of the law's force

@@ -1,11 +1,12 @@
-#include "haptic_client/evaluation/told_errors.h"
+#include "haptic_client/evaluation/published_errors.h"
 
 #include "tests/support/catch.h"
 
 using namespace palpate;
 using namespace palpate::client;
 
-TEST_CASE("told errors: a mean by the size of the force, with the source of most of it, unknown left out") {
+TEST_CASE(
+    "published errors: a mean by the size of the force, with the source of most of it, unknown left out") {
   PublishedErrors errors;
   CHECK_FALSE(errors.mean().mesh.known());
   errors.add({{ErrorSource::kEstimated, 4}, {ErrorSource::kUnknown, 0}}, 3);
