@@ -72,13 +72,13 @@ struct palpate_session {
 
   /// Throws when no server gives a tool in time.
   void connect();
-  void tick(const palpate_tool_state& published, palpate_felt& rendered) noexcept;
+  void tick(const palpate_tool_state& published, palpate_rendered& rendered) noexcept;
 
   std::atomic<bool> rearm{false};
 
  private:
   protocol::ToolState sense(const palpate_tool_state& published) noexcept;
-  void report(const TickResult& result, palpate_felt& rendered) const noexcept;
+  void report(const TickResult& result, palpate_rendered& rendered) const noexcept;
 
   ClientConfig config_;
   Pipeline pipeline_;
@@ -136,7 +136,7 @@ protocol::ToolState palpate_session::sense(const palpate_tool_state& published) 
   return tool;
 }
 
-void palpate_session::tick(const palpate_tool_state& published, palpate_felt& rendered) noexcept {
+void palpate_session::tick(const palpate_tool_state& published, palpate_rendered& rendered) noexcept {
   if (rearm.exchange(false, std::memory_order_relaxed)) pipeline_.rearm();
   const protocol::ToolState tool = sense(published);
   protocol::ForceSample sample;
@@ -150,7 +150,7 @@ void palpate_session::tick(const palpate_tool_state& published, palpate_felt& re
   report(result, rendered);
 }
 
-void palpate_session::report(const TickResult& result, palpate_felt& rendered) const noexcept {
+void palpate_session::report(const TickResult& result, palpate_rendered& rendered) const noexcept {
   const Workspace& workspace = config_.workspace;
   const Time age{pipeline_.age_ns()};
   const bool known = age >= Time::zero();
@@ -178,7 +178,8 @@ int palpate_session_open(const palpate_session_options* options, palpate_session
   });
 }
 
-int palpate_session_tick(palpate_session* session, const palpate_tool_state* tool, palpate_felt* rendered) {
+int palpate_session_tick(palpate_session* session, const palpate_tool_state* tool,
+                         palpate_rendered* rendered) {
   if (session == nullptr || !c_interface::is_complete(tool) || !c_interface::is_complete(rendered))
     return PALPATE_WRONG_INPUT;
   session->tick(*tool, *rendered);

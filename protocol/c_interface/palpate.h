@@ -144,7 +144,7 @@ enum {
 };
 
 /// The force of one tick with what it is made of; all in D.
-typedef struct palpate_felt {
+typedef struct palpate_rendered {
   uint32_t struct_size;
   uint32_t state;
   uint32_t fault;
@@ -158,7 +158,14 @@ typedef struct palpate_felt {
   double age;         ///< s since the tool was at the place of the newest sample; -1: none yet
   double normal[3];   ///< of the surface near the tool, at the newest sample; 0: none near, or not known
   double gap;         ///< from there to the tool, at the newest sample, m
-} palpate_felt;
+} palpate_rendered;
+
+/// Former name of palpate_rendered, for one release more.
+#if defined(__GNUC__)
+typedef palpate_rendered palpate_felt __attribute__((deprecated("write palpate_rendered")));
+#else
+typedef palpate_rendered palpate_felt;
+#endif
 
 /// Connects to a server, which gives the session a tool of its scene; tries for 5 s. Starts one thread, for
 /// the network, in which all signals are blocked. `options` NULL: all defaults. `*session` is NULL unless it
@@ -173,7 +180,7 @@ PALPATE_API int palpate_session_open(const palpate_session_options* options, pal
 /// Where it does not return PALPATE_OK, write zero force to the motors. Haptic thread. No watchdog guards the
 /// loop of the caller: should it stop, the device holds its last force unless its driver ends it.
 PALPATE_API int palpate_session_tick(palpate_session* session, const palpate_tool_state* tool,
-                                     palpate_felt* rendered);
+                                     palpate_rendered* rendered);
 
 /// Asks the next tick to clear a latched fault; the force rises again over 1 s. Any thread.
 PALPATE_API int palpate_session_rearm(palpate_session* session);

@@ -1,6 +1,6 @@
-"""Whether the forces that a program felt are those that `haptic_client replay` makes of the server's capture.
+"""Whether the forces that a program rendered are those that `haptic_client replay` makes of the server's capture.
 
-usage: same_forces.py FELT.csv REPLAYED.csv
+usage: same_forces.py RENDERED.csv REPLAYED.csv
 """
 import csv
 import sys
@@ -12,10 +12,10 @@ def forces(file):
 
 
 def main():
-    felt, replayed = (forces(file) for file in sys.argv[1:])
-    assert len(replayed) > 0.98 * len(felt), (len(felt), len(replayed))
-    other = [tick for tick, force in replayed.items() if force != felt[tick]]
-    assert not other, f"{len(other)} of {len(replayed)} ticks felt another force, the first is {other[0]}"
+    rendered, replayed = (forces(file) for file in sys.argv[1:])
+    assert len(replayed) > 0.98 * len(rendered), (len(rendered), len(replayed))
+    other = [tick for tick, force in replayed.items() if force != rendered[tick]]
+    assert not other, f"{len(other)} of {len(replayed)} ticks rendered another force, the first is {other[0]}"
     pushed = sum(any(force) for force in replayed.values())
     assert pushed > 500, pushed
     print(f"same_forces: {len(replayed)} ticks, {pushed} with a force, each the same as in the replay")

@@ -102,7 +102,7 @@ void check_wrong_sessions() {
   options.max_force = 0;
   expect(open() == PALPATE_FAILED && std::strlen(error) > 0, "a session without a server");
   expect(session == nullptr, "a handle without a server");
-  auto rendered = sized<palpate_felt>();
+  auto rendered = sized<palpate_rendered>();
   const auto tool = sized<palpate_tool_state>();
   expect(palpate_session_tick(nullptr, &tool, &rendered) == PALPATE_WRONG_INPUT, "a tick of nothing");
   expect(palpate_session_rearm(nullptr) == PALPATE_WRONG_INPUT, "nothing is armed");

@@ -41,7 +41,7 @@ class Options(Sized):
                 ("method", TEXT), ("max_force", F64)]
 
 
-class Felt(Sized):
+class Rendered(Sized):
     _fields_ = [("struct_size", U32), ("state", U32), ("fault", U32), ("flags", U32), ("tick", U64), ("sample", U64),
                 ("force", F64 * 3), ("law_newton", F64), ("gain", F64), ("age", F64), ("normal", F64 * 3), ("gap", F64)]
 
@@ -113,14 +113,14 @@ def check_limit(client, server, key, newton=0.2):
     options = Options(server=server.encode(), key_file=key.encode(), max_force=newton)
     session = opened(client.palpate_session_open, ctypes.byref(options))
     most = law = 0
-    felt, begin = Felt(), time.monotonic()
+    rendered, begin = Rendered(), time.monotonic()
     while time.monotonic() - begin < 2.5:
         tool = ToolState(position=(0, 0.003, 0))
-        assert client.palpate_session_tick(session, ctypes.byref(tool), ctypes.byref(felt)) == OK
-        most = max(most, sum(f * f for f in felt.force) ** 0.5)
-        law = max(law, felt.law_newton)
+        assert client.palpate_session_tick(session, ctypes.byref(tool), ctypes.byref(rendered)) == OK
+        most = max(most, sum(f * f for f in rendered.force) ** 0.5)
+        law = max(law, rendered.law_newton)
         time.sleep(0.002)
-    assert felt.state == LIVE and law > 0.5, (felt.state, law)
+    assert rendered.state == LIVE and law > 0.5, (rendered.state, law)
     assert 0.9 * newton < most <= newton * (1 + 1e-12), most
     client.palpate_session_close(session)
     return law, most
@@ -132,7 +132,7 @@ def main():
     contacts = check_scene(sim, client, scene, capture)
     check_broken_capture(client, capture)
     law, most = check_limit(client, server, key)
-    print(f"scene.py: {contacts} samples in contact, the same forces; {law:.2f} N asked for, {most:.2f} N felt")
+    print(f"scene.py: {contacts} samples in contact, the same forces; {law:.2f} N asked for, {most:.2f} N rendered")
 
 
 main()

@@ -10,7 +10,7 @@
 
 enum { TICKS = 2000, NANOSECONDS = 2000000 };
 
-static palpate_felt felt[TICKS];
+static palpate_rendered rendered[TICKS];
 static char error[512];
 
 /// Whatever the libraries allocate comes through here.
@@ -58,15 +58,15 @@ int main(int argc, char** argv) {
   for (int i = 0; i < TICKS; ++i) {
     wait_for_tick(&deadline);
     palpate_tool_state tool = hand_at(1e-9 * NANOSECONDS * i);
-    felt[i].struct_size = sizeof felt[i];
-    expect(palpate_session_tick(session, &tool, &felt[i]) == PALPATE_OK, "a tick failed");
-    const int in_contact = (felt[i].flags & PALPATE_IN_CONTACT) != 0;
-    pressed += in_contact && felt[i].normal[1] > 0.5 && felt[i].force[1] > 0.3;
+    rendered[i].struct_size = sizeof rendered[i];
+    expect(palpate_session_tick(session, &tool, &rendered[i]) == PALPATE_OK, "a tick failed");
+    const int in_contact = (rendered[i].flags & PALPATE_IN_CONTACT) != 0;
+    pressed += in_contact && rendered[i].normal[1] > 0.5 && rendered[i].force[1] > 0.3;
   }
   const long ticked = allocations - before;
   expect(before > 0, "allocations are not counted");
   expect(ticked == 0, "a tick allocated");
-  expect(felt[TICKS - 1].state == PALPATE_LIVE && felt[TICKS - 1].fault == PALPATE_NO_FAULT, "not live");
+  expect(rendered[TICKS - 1].state == PALPATE_LIVE && rendered[TICKS - 1].fault == PALPATE_NO_FAULT, "not live");
   expect(pressed > TICKS / 10, "the block hardly pushed back");
   palpate_session_close(session);
 
@@ -74,8 +74,8 @@ int main(int argc, char** argv) {
   expect(out != NULL, "the forces cannot be written");
   fprintf(out, "tick,fx_n,fy_n,fz_n\n");
   for (int i = 0; i < TICKS; ++i)
-    fprintf(out, "%d,%.17g,%.17g,%.17g\n", (int)felt[i].tick, felt[i].force[0], felt[i].force[1],
-            felt[i].force[2]);
+    fprintf(out, "%d,%.17g,%.17g,%.17g\n", (int)rendered[i].tick, rendered[i].force[0], rendered[i].force[1],
+            rendered[i].force[2]);
   expect(fclose(out) == 0, "the forces cannot be written");
   printf("session: %d ticks, %d of them pressed, %ld allocations\n", TICKS, pressed, ticked);
   return 0;

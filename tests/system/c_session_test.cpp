@@ -15,7 +15,7 @@ namespace {
 
 struct Session {
   palpate_session* session = nullptr;
-  palpate_felt rendered{};
+  palpate_rendered rendered{};
   std::size_t allocations = 0;  // in ticks
 
   explicit Session(const std::string& address) {
