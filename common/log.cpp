@@ -31,7 +31,7 @@ void report_more() {
   logger()->set_level(spdlog::level::debug);
 }
 
-bool tells_more() {
+bool is_debugging() {
   return logger()->should_log(spdlog::level::debug);
 }
 

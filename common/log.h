@@ -12,7 +12,7 @@ void start(std::string_view program);
 /// Writes debug lines, too, from this call on.
 void report_more();
 /// True if debug lines are written.
-bool tells_more();
+bool is_debugging();
 
 void write_debug(std::string_view line);
 void write_info(std::string_view line);
@@ -21,7 +21,7 @@ void write_error(std::string_view line);
 
 template <class... Args>
 void debug(fmt::format_string<Args...> format, Args&&... args) {
-  if (tells_more()) write_debug(fmt::format(format, std::forward<Args>(args)...));
+  if (is_debugging()) write_debug(fmt::format(format, std::forward<Args>(args)...));
 }
 template <class... Args>
 void info(fmt::format_string<Args...> format, Args&&... args) {

@@ -68,7 +68,7 @@ void declare(CLI::App& app, const Command& command) {
 std::optional<int> parse(CLI::App& app, int argc, char** argv) {
   app.set_version_flag("--version", "palpate " PALPATE_VERSION);
   app.add_flag_callback("--debug", log::report_more,
-                        "Before the subcommand: tell more, as what the link did in each second");
+                        "Before the subcommand: print more, such as what the link did in each second");
   try {
     app.parse(argc, argv);
     return {};

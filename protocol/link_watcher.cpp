@@ -30,7 +30,7 @@ void LinkWatcher::poll(const std::string& name) {
   if (++polls_ < kPollsPerClock) return;
   polls_ = 0;
   newest_.read(now_);
-  if (!log::tells_more()) return;
+  if (!log::is_debugging()) return;
   log::debug("{}link, in the last second: {}", name, published_since(before_, now_));
   before_ = now_;
 }

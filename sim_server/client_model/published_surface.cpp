@@ -72,12 +72,12 @@ bool PublishedSurface::Part::holds(const Vec3& place, double fraction) const noe
 /// What is left, by itself: what both the modes and the compliance of any part of its surface follow from.
 struct SurfacePublisher::Body {
   Body(const SurfacePublisher& owner, TetMesh&& remaining, const ElasticTensors& tensors,
-       const Progress& tells, const SetupCache* cache)
+       const Progress& progress, const SetupCache* cache)
       : mesh(std::move(remaining)),
         places(tensors.places()),
         masses(tensors.masses()),
         owner_(owner),
-        progress_(tells) {
+        progress_(progress) {
     inputs.cache = cache;
   }
   Body(const Body&) = delete;

@@ -38,8 +38,8 @@ double sum_of(const std::vector<RankMemory>& ranks) {
 MakeFactor mumps_maker(std::optional<MumpsCosts>& costs) {
   return [&costs](const SparseMatrix& lower, std::span<const int> stored, FactorUse use,
                   const std::string& where) {
-    const auto tell = [](const std::string& line) { log::info("{}", line); };
-    auto factor = std::make_unique<MumpsFactor>(lower, stored, use, where, tell);
+    const auto report = [](const std::string& line) { log::info("{}", line); };
+    auto factor = std::make_unique<MumpsFactor>(lower, stored, use, where, report);
     costs = factor->costs();
     return factor;
   };

@@ -76,7 +76,7 @@ std::string shape_of(const Tool& tool) {
 /// Of what can be cut, to tell clients its surface anew.
 bool keeps_factor(const Simulation& simulation) {
   return std::ranges::any_of(simulation.memory(),
-                             [](const MemoryPart& part) { return part.name == "surface told to clients"; });
+                             [](const MemoryPart& part) { return part.name == "published surface"; });
 }
 
 std::string detail_of(const Scene& scene, const Simulation& simulation, const std::string& part) {
@@ -97,7 +97,7 @@ std::string detail_of(const Scene& scene, const Simulation& simulation, const st
   }
   if (part == "compliance") return fmt::format("{} nodes", loaded_nodes(scene, simulation));
   if (part == "stiffness matrix" || part == "its factor")
-    return keeps_factor(simulation)                         ? "kept: part of surface told to clients"
+    return keeps_factor(simulation)                         ? "kept: part of the published surface"
            : model_of(scene.deformation).keeps_compliance() ? "freed after set-up"
                                                             : "kept: part of motion";
   if (const ToolSettings* tool = tool_of(scene, part)) {

@@ -218,7 +218,7 @@ std::optional<Scene> watch(NetLink& link, const SimLoop& loop, const Scene& scen
     }
     recording.look();
     link.watcher.poll("");
-    events.tell(link, loop, view != nullptr && view->feed().paused);
+    events.report(link, loop, view != nullptr && view->feed().paused);
   }
   return {};
 }

@@ -7,7 +7,7 @@ namespace palpate::sim {
 RunEvents::RunEvents(const Scene& scene)
     : scene_(scene), held_(scene.tools.size(), false), beyond_(scene.tools.size(), false) {}
 
-void RunEvents::tell(const NetLink& link, const SimLoop& loop, bool paused) {
+void RunEvents::report(const NetLink& link, const SimLoop& loop, bool paused) {
   report_paused(paused);
   report_holders(link, paused);
   report_beyond(loop);

@@ -14,7 +14,7 @@ class RunEvents {
   /// Reports on a scene, which outlives this.
   explicit RunEvents(const Scene& scene);
   /// Prints what is new since the last call.
-  void tell(const NetLink& link, const SimLoop& loop, bool paused);
+  void report(const NetLink& link, const SimLoop& loop, bool paused);
 
  private:
   void report_paused(bool paused);

@@ -57,7 +57,7 @@ std::vector<MemoryPart> CuttableMotion::memory() const {
            (body_->first.size() + node_.size()) * sizeof(int)}};
   if (publisher_)
     parts.push_back(
-        {"surface told to clients", publisher_->bytes(),
+        {"published surface", publisher_->bytes(),
          fmt::format("near their tools, {:.2g} s after the last cut{}{}", publisher_->delay(),
                      publisher_->failure().empty() ? "" : "; not by now: ", publisher_->failure())});
   if (body_->rest)

@@ -33,9 +33,9 @@ bool held_by_vertices(const Scene& scene) {
          std::ranges::none_of(scene.loads, displaces);
 }
 
-/// Whether clients are told slow modes about rest: of a body that only tools move, or besides supports of
+/// Whether slow modes about rest are published: of a body that only tools move, or also supports of
 /// which it is known how it follows them.
-bool tells_modes(const ModelInputs& inputs) {
+bool publishes_modes(const ModelInputs& inputs) {
   const auto* const published = inputs.scene.deformation.find<ClientModes>();
   return published != nullptr && published->modes > 0 && !inputs.scene.cutting &&
          inputs.scene.loads.empty() && held_by_vertices(inputs.scene) &&
@@ -76,9 +76,9 @@ double Implicit::estimated_bytes(const Scene& scene, const MeshCounts& counts) {
   const double bytes = body_bytes(counts, element, loaded ? 3 : 1);
   const bool background =
       scene.deformation.of<ImplicitSettings>().solver != DynamicsSettings::Solver::kDirect;
-  const bool tells = scene.deformation.find<ClientModes>() != nullptr;  // it may
+  const bool publishes = scene.deformation.find<ClientModes>() != nullptr;  // it may
   return bytes + (background ? matrix_bytes(counts, element) : 0) +
-         (tells ? body_bytes(counts, element, 1) : 0);
+         (publishes ? body_bytes(counts, element, 1) : 0);
 }
 
 Implicit::Implicit(const ModelInputs& inputs)
@@ -107,7 +107,7 @@ Implicit::Implicit(const ModelInputs& inputs)
   }
   if (inputs.scene.deformation.of<ImplicitSettings>().solver != DynamicsSettings::Solver::kDirect)
     triangles_ = inputs.surface.triangles;
-  if (tells_modes(inputs)) {
+  if (publishes_modes(inputs)) {
     const LinearStatics statics(inputs);
     published_.emplace(inputs, statics, places_of(statics), masses_of_places(statics));
     if (!published_->modes().relaxations.empty()) relaxation_.emplace(published_->modes());
@@ -126,7 +126,7 @@ void Implicit::begin(const ModelInputs& inputs) {
   const auto responses =
       support_responses(inputs, solid_, dynamics_.dofs(), flexibility, Following::kSwinging);
   if (!responses.empty()) supports_.emplace(inputs, responses);
-  if (tells_modes(inputs)) responses_ = responses;
+  if (publishes_modes(inputs)) responses_ = responses;
   if (inputs.scene.flies() || (inputs.scene.loads.empty() && !supports_)) return;
   inputs.progress(name_of(Stage::kLoadedShape), 0);
   const StaticLoad load{
@@ -372,7 +372,7 @@ std::vector<MemoryPart> Implicit::memory() const {
                                                                  static_cast<std::size_t>(solid_.nodes()) *
                                                                  sizeof(Vec3)});
   if (published_)
-    parts.push_back({"motion told to clients", published_->bytes() + (relaxation_ ? relaxation_->bytes() : 0),
+    parts.push_back({"published motion", published_->bytes() + (relaxation_ ? relaxation_->bytes() : 0),
                      published_->detail()});
   return parts;
 }

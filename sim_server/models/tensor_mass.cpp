@@ -48,11 +48,11 @@ TensorMass::TensorMass(const ModelInputs& inputs)
       mesh_rest_(inputs.mesh.vertices),
       nodes_(mesh_rest_) {
   const auto* const published = inputs.scene.deformation.find<ClientModes>();
-  const bool tells = published != nullptr && published->modes > 0;
-  if (tells || supports_move(inputs.scene)) {
+  const bool publishes = published != nullptr && published->modes > 0;
+  if (publishes || supports_move(inputs.scene)) {
     const LinearStatics statics(inputs);
     supports_ = statics.supports(Following::kSwinging);
-    if (tells) published_.emplace(inputs, statics, tensors_.places(), tensors_.masses());
+    if (publishes) published_.emplace(inputs, statics, tensors_.places(), tensors_.masses());
   }
   for (const int vertex : inputs.surface.vertices) {
     rest_.push_back(inputs.mesh.vertices[vertex]);
@@ -263,7 +263,7 @@ std::vector<MemoryPart> TensorMass::memory() const {
                         loads_.capacity() * sizeof(VertexLoad) + first_.size() * sizeof(int) +
                         compliance_.index_bytes()}};
   if (supports_) parts.push_back({"moving supports", supports_->bytes()});
-  if (published_) parts.push_back({"motion told to clients", published_->bytes(), published_->detail()});
+  if (published_) parts.push_back({"published motion", published_->bytes(), published_->detail()});
   return parts;
 }
 

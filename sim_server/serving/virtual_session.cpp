@@ -162,8 +162,8 @@ void VirtualSession::deliver(Time t) {
     auto* const member = server_.holder(next.sample.tool);
     to_client({session_, ++member->sent}, next.sample, next.ready);
     ++stats_.force_samples;
-    const bool tells = (next.sample.flags & ForceSample::kHasSurface) != 0;
-    if (tells && link_.parts) send_surface(next.sample, next.ready);
+    const bool has_surface = (next.sample.flags & ForceSample::kHasSurface) != 0;
+    if (has_surface && link_.parts) send_surface(next.sample, next.ready);
   }
 }
 

@@ -70,9 +70,9 @@ bool PageLink::next_surface(const Showing& showing, Time now, Bytes& out) {
                 received_.positions, complete, out);
   received_.surface = showing.pictures;
   surface_at_ = now;
-  // The same step may be shown again, as when a page opens while paused: it is told of once.
+  // The same step may be shown again, as when a page opens while paused: it is sent once.
   const auto step = static_cast<std::uint32_t>(picture.step);
-  if (tells_ && (in_transit_.empty() || in_transit_.back() != step)) in_transit_.push_back(step);
+  if (acknowledges_ && (in_transit_.empty() || in_transit_.back() != step)) in_transit_.push_back(step);
   return true;
 }
 
@@ -82,7 +82,7 @@ bool PageLink::may_follow(Time after) const noexcept {
 }
 
 void PageLink::shown(std::uint32_t step) noexcept {
-  tells_ = true;
+  acknowledges_ = true;
   const auto found = std::find(in_transit_.rbegin(), in_transit_.rend(), step);
   in_transit_.erase(in_transit_.begin(), found.base());
 }

@@ -60,7 +60,7 @@ class PageLink {
     received_.positions.clear();
     complete_triangles_ = received_.version > Showing::kCompleteSurface;
   }
-  /// The newest reason is told.
+  /// Sends the newest reason.
   void refuse(std::string why) { refused_ = std::move(why); }
 
   enum class Kind { kText, kBinary };
@@ -70,7 +70,7 @@ class PageLink {
   static constexpr double kMessagesPerSecond = 200;
   static constexpr Time kHelloWithin = std::chrono::seconds(5);
   static constexpr Time kStateEach = std::chrono::milliseconds(150);  ///< at least
-  static constexpr std::size_t kMaxInTransit = 4;  ///< surfaces, of a page that tells what it drew
+  static constexpr std::size_t kMaxInTransit = 4;  ///< surfaces, of a page that reports what it drew
   static constexpr Time kSurfaceEach = std::chrono::milliseconds(15);  ///< at most
 
  private:
@@ -93,7 +93,7 @@ class PageLink {
   } received_;
   bool complete_triangles_ = false;  // to be sent again
   std::string refused_;
-  bool tells_ = false;                     // what it drew
+  bool acknowledges_ = false;              // the page reports each surface that it drew
   std::vector<std::uint32_t> in_transit_;  // steps of surfaces, the oldest first
   std::vector<PagePointer> pressed_;
 };

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPeriod = 1.0 / 30;
 
-bool tells_tangents(const ModelCase& choice) {
+bool publishes_tangents(const ModelCase& choice) {
   return !exempt(choice, "tangents");
 }
 
@@ -83,7 +83,7 @@ Mat3 slope_of(const ModelCase& choice, Direction way, double step) {
 }  // namespace
 
 CONTRACT("a model that knows no compliance of later tells clients no tangents, in contact and before it",
-         ModelCase, choice, model_cases([](const ModelCase& c) { return !tells_tangents(c); })) {
+         ModelCase, choice, model_cases([](const ModelCase& c) { return !publishes_tangents(c); })) {
   for (const Vec3& place : {Vec3(0.003, 0.0030, 0.0015), Vec3(0.003, 0.0052, 0.0015)}) {
     ToolForce rendered;
     const protocol::ForceSample sample = answer_to(choice, {.last = place}, &rendered);
@@ -95,7 +95,7 @@ CONTRACT("a model that knows no compliance of later tells clients no tangents, i
 CONTRACT(
     "the stiffness sent to the client is the slope of the server's own force over the sample "
     "interval",
-    ModelCase, choice, model_cases(tells_tangents)) {
+    ModelCase, choice, model_cases(publishes_tangents)) {
   const Direction way{.last = Vec3(0.0028, 0.0030, 0.0015), .held = held_until_fresh(choice)};
   ToolForce rendered;
   const Mat3 sent = answer_to(choice, way, &rendered).at_tool.tangent;
@@ -119,7 +119,7 @@ CONTRACT("in motion too the stiffness sent is that slope, but for the age of its
 // With friction the force depends on the way, and where the tool slides its slope is not symmetric. What is
 // sent is the part of it that stores energy, of the last stride: the whole way of a slow tool.
 CONTRACT("with friction the stiffness sent is that of a tool that sticks, or slides on", ModelCase, choice,
-         model_cases(tells_tangents)) {
+         model_cases(publishes_tangents)) {
   const Vec3 drag(2e-5, 5e-6, 0);
   for (const bool slides : {false, true}) {
     DYNAMIC_SECTION((slides ? "slides" : "sticks")) {

@@ -34,7 +34,7 @@ TEST_CASE("left out: a minimal scene has these parts in memory, and no other") {
     double most;  // bytes
     std::string keys = {};
   };
-  const std::string kPublished = "motion told to clients", kUntold = "client_modes = 0\n";
+  const std::string kPublished = "published motion", kUnpublished = "client_modes = 0\n";
   // Of 1387 vertices (1329 free), 621 on the surface (566 free), 6254 tetrahedra, 7907 edges: the mesh takes
   // 0.15 MB, the contact of one tool without friction 1.43 MB, compliance 72 x 566^2 = 23.1 MB, tensors 72 a
   // vertex and edge, motion 216 a vertex, 40 modes 3 x 8 x 40 of the surface's. Tissue in implicit motion:
@@ -43,8 +43,8 @@ TEST_CASE("left out: a minimal scene has these parts in memory, and no other") {
   const std::vector<Row> rows{
       {"rigid", {"rest_positions"}, 1.7e6},
       {"quasi_static", {"positions", "compliance"}, 24.8e6},
-      {"tensor_mass", {"positions", "tensors", "motion", "compliance"}, 26e6, kUntold},
-      {"implicit", {"positions", "elements", "motion", "compliance"}, 17e6, kUntold},
+      {"tensor_mass", {"positions", "tensors", "motion", "compliance"}, 26e6, kUnpublished},
+      {"implicit", {"positions", "elements", "motion", "compliance"}, 17e6, kUnpublished},
       {"tensor_mass", {"positions", "tensors", "motion", "compliance", kPublished}, 51e6},
       {"implicit", {"positions", "elements", "motion", "compliance", kPublished}, 42e6},
       {"reduced", {"positions", "compliance", "modes"}, 25.5e6},

@@ -55,7 +55,7 @@ TEST_CASE("page news: nothing of a client that left is said of the next") {
   const ViewerFeed::Hooks& hooks = bench.hooks;
   const Time began = bench.began;
   Time now = began;
-  const auto tell = [&](std::uint8_t named, float error) {
+  const auto report = [&](std::uint8_t named, float error) {
     now += std::chrono::seconds(1);
     protocol::Telemetry published;
     published.t_ns = now.count();
@@ -72,14 +72,14 @@ TEST_CASE("page news: nothing of a client that left is said of the next") {
     hooks.events(now);
   };
   hold(true);
-  tell(0, 3);
+  report(0, 3);
   CHECK(feed.clients[0].errors_percent[0] == 3);
   CHECK(std::isnan(feed.clients[0].errors_percent[1]));  // not told yet
-  tell(1, 4);
+  report(1, 4);
   CHECK(feed.clients[0].errors_percent[1] == 4);
   hold(false);
   hold(true);
-  tell(0, 5);
+  report(0, 5);
   CHECK(feed.clients[0].errors_percent[0] == 5);
   CHECK(std::isnan(feed.clients[0].errors_percent[1]));
 }

@@ -200,10 +200,10 @@ TEST_CASE("samples tell of a surface until it is cut, in that step no more, and 
   }
   std::vector<std::uint32_t> before, after;
   for (const ForceSample& sample : samples_in(folder.path() / "a.pcap")) {
-    const bool tells = (sample.flags & ForceSample::kHasSurface) != 0;
-    CHECK(tells == ((sample.flags & ForceSample::kHasModes) != 0));
-    if (tells) (sample.cuts == 0 ? before : after).push_back(sample.surface.version);
-    if (sample.cuts == 1 && after.empty()) CHECK(!tells);
+    const bool has_surface = (sample.flags & ForceSample::kHasSurface) != 0;
+    CHECK(has_surface == ((sample.flags & ForceSample::kHasModes) != 0));
+    if (has_surface) (sample.cuts == 0 ? before : after).push_back(sample.surface.version);
+    if (sample.cuts == 1 && after.empty()) CHECK(!has_surface);
   }
   CHECK(before.size() > 60);  // of 75 samples; it takes 0.2 s to be told at first
   CHECK(after.size() > 50);
