@@ -1,16 +1,24 @@
 #include "common/clock.h"
 
 #include <cerrno>
-#include <time.h>
+#include <ctime>
 
 namespace palpate {
-namespace {
-constexpr long kNanosecondsPerSecond = 1'000'000'000;
 
+Time from_timespec(const timespec& t) noexcept {
+  return std::chrono::seconds(t.tv_sec) + Time{t.tv_nsec};
+}
+
+timespec to_timespec(Time t) noexcept {
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(t);
+  return {.tv_sec = seconds.count(), .tv_nsec = (t - seconds).count()};
+}
+
+namespace {
 Time read_clock(clockid_t clock) noexcept {
   timespec t{};
   clock_gettime(clock, &t);
-  return Time{t.tv_sec * kNanosecondsPerSecond + t.tv_nsec};
+  return from_timespec(t);
 }
 
 }  // namespace
@@ -28,7 +36,7 @@ Time monotonic_epoch() noexcept {
 }
 
 void sleep_until(Time deadline) noexcept {
-  const timespec t{deadline.count() / kNanosecondsPerSecond, deadline.count() % kNanosecondsPerSecond};
+  const timespec t = to_timespec(deadline);
   while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR) {
   }
 }

@@ -5,6 +5,8 @@
 #include <initializer_list>
 #include <pthread.h>
 
+#include "common/clock.h"
+
 namespace palpate {
 namespace {
 
@@ -36,7 +38,7 @@ void block_interrupts() {
 
 bool wait_for_interrupt(Time timeout) {
   const sigset_t set = set_of({SIGINT, SIGTERM, SIGHUP, SIGQUIT});
-  const timespec t{timeout.count() / 1'000'000'000, timeout.count() % 1'000'000'000};
+  const timespec t = to_timespec(timeout);
   return g_stop || sigtimedwait(&set, nullptr, &t) > 0 || g_stop;
 }
 

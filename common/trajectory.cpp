@@ -6,11 +6,11 @@
 #include "common/config.h"
 #include "common/csv.h"
 #include "common/error.h"
+#include "common/units.h"
 
 namespace palpate {
 namespace {
-constexpr double kClosed = 1e-3;    // m: how near the start a motion that repeats must end
-constexpr double kMaxOffset = 1e3;  // m
+constexpr double kClosed = 1e-3;  // m: how near the start a motion that repeats must end
 }  // namespace
 
 TrajectorySettings read_trajectory_settings(const Config& section) {
@@ -19,7 +19,7 @@ TrajectorySettings read_trajectory_settings(const Config& section) {
   const auto names = section.texts("columns", 4, {trajectory.columns.begin(), trajectory.columns.end()});
   std::ranges::copy(names, trajectory.columns.begin());
   trajectory.scale = section.number("scale", {1e-9, 1e9, "m per unit"}, trajectory.scale);
-  trajectory.offset = section.vector("offset", {-kMaxOffset, kMaxOffset, "m"}, trajectory.offset);
+  trajectory.offset = section.vector("offset", {-kMaxCoordinate, kMaxCoordinate, "m"}, trajectory.offset);
   trajectory.repeat = section.flag("repeat", trajectory.repeat);
   section.reject_unknown();
   return trajectory;

@@ -4,11 +4,10 @@
 #include <array>
 
 #include "common/error.h"
+#include "common/units.h"
 
 namespace palpate {
 namespace {
-
-constexpr double kFar = 1e3;  // m
 
 /// Which device axis each axis of the world is, such as ["x", "-z", "y"].
 Mat3 read_axes(const Config& config) {
@@ -40,7 +39,7 @@ const std::array kReaches{
 Workspace read_workspace(const Config& config) {
   Workspace workspace;
   workspace.scale = config.number("scale", {0.01, 100, "world m per device m"}, workspace.scale);
-  workspace.offset_W = config.vector("offset", {-kFar, kFar, "m"}, workspace.offset_W);
+  workspace.offset_W = config.vector("offset", {-kMaxCoordinate, kMaxCoordinate, "m"}, workspace.offset_W);
   workspace.axes = read_axes(config);
   return workspace;
 }

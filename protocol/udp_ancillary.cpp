@@ -52,7 +52,7 @@ socklen_t fill(sockaddr_storage& out, const Endpoint& endpoint) noexcept {
 
 /// The kernel stamps by the calendar's clock.
 Time monotonic(const timespec& stamp) noexcept {
-  const Time t = Time{stamp.tv_sec * 1'000'000'000 + stamp.tv_nsec} - monotonic_epoch(), local = now();
+  const Time t = from_timespec(stamp) - monotonic_epoch(), local = now();
   return std::clamp(t, local - kLongestWait, local);
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <memory>
-#include <numbers>
 #include <thread>
 #include <unistd.h>
 
@@ -16,6 +15,7 @@
 #include "common/program.h"
 #include "common/realtime.h"
 #include "common/text.h"
+#include "common/units.h"
 #include "haptic_client/calibration/calibration.h"
 #include "haptic_client/commands/overrides.h"
 #include "haptic_client/device/devices.h"
@@ -157,7 +157,7 @@ bool guide(LatestValue<CalibrationProgress>& newest, const Device& device, const
 }
 
 void print_result(const Calibration& calibration) {
-  const double tilt = calibration.tilt() * 180 / std::numbers::pi;
+  const double tilt = calibration.tilt() / kDegree;
   fmt::print(
       "torque constant {:.0f} DAC units per N m, +-{:.1f} % by the spread of the readings; the weight pulled "
       "{:.0f} "

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/units.h"
 #include "haptic_client/device/falcon_packets.h"
 
 namespace palpate::client::falcon {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::array kAzimuth{105 * kDegree, -15 * kDegree, -135 * kDegree};  // of the three legs
 // Quadrature of 320 lines; ratio of the capstan drive.
 constexpr double kCountsPerTurn = 4 * 320, kCapstan = 110 / 14.25;

@@ -1,10 +1,11 @@
 #include "haptic_client/extrapolation/learned_stiffness.h"
 
+#include "common/units.h"
+
 namespace palpate::client {
 namespace {
 constexpr double kSmallStep = 10e-6;  // m: below it a step says little of the stiffness
 constexpr double kStiffest = 50e3;    // N/m
-constexpr double kMaxDistance = 1e3;  // m
 }  // namespace
 
 void LearnedStiffness::update(const Sample& sample) noexcept {
@@ -34,7 +35,7 @@ Vec3 LearnedStiffness::force(const Vec3& p, Time) noexcept {
   const Sample& newest = samples_.newest;
   if (samples_.count == 0) return Vec3::Zero();
   const Vec3 x = p - newest.p;
-  if (!(x.cwiseAbs().maxCoeff() < kMaxDistance)) return newest.f;
+  if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate)) return newest.f;
   return without_pull(newest.f + b_ * x, newest.f);
 }
 

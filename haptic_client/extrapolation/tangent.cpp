@@ -2,10 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "common/units.h"
+
 namespace palpate::client {
-namespace {
-constexpr double kMaxPlace = 1e3;  // m
-}
 
 Mat3 restoring_part(const Mat3& k) noexcept {
   const Mat3 symmetric = 0.5 * (k + k.transpose());
@@ -19,7 +18,7 @@ Mat3 restoring_part(const Mat3& k) noexcept {
 
 Vec3 force_at(const Linearisation& l, const Vec3& p) noexcept {
   const Vec3 x = p - l.p_W;
-  if (!(x.cwiseAbs().maxCoeff() < kMaxPlace)) return l.f_W;
+  if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate)) return l.f_W;
   if (l.f_W.isZero(0)) {
     const double depth = l.gap + l.normal_W.dot(x);
     return depth < 0 ? Vec3(depth * (l.tangent * l.normal_W)) : Vec3(Vec3::Zero());

@@ -2,9 +2,9 @@
 
 #include <fmt/core.h>
 #include <memory>
-#include <numbers>
 
 #include "common/log.h"
+#include "common/units.h"
 #include "sim_server/mesh/gmsh_io.h"
 
 namespace palpate::sim {
@@ -12,7 +12,6 @@ namespace {
 
 void print_sizes(const TetMesh& mesh) {
   const MeshInfo info = describe(mesh);
-  constexpr double kDegrees = 180 / std::numbers::pi;
   const Vec3 size = info.max - info.min;
   fmt::print("  vertices            {}\n  edges               {}\n  tetrahedra          {}\n", info.vertices,
              info.edges, info.tetrahedra);
@@ -26,7 +25,7 @@ void print_sizes(const TetMesh& mesh) {
              1e3 * info.median_edge, 1e3 * info.max_edge);
   fmt::print(
       "  dihedral angles     {:.2f} to {:.2f} degrees; median of the smallest per tetrahedron {:.2f}\n",
-      kDegrees * info.min_dihedral, kDegrees * info.max_dihedral, kDegrees * info.median_min_dihedral);
+      info.min_dihedral / kDegree, info.max_dihedral / kDegree, info.median_min_dihedral / kDegree);
   if (const std::string odd = odd_size(mesh); !odd.empty()) log::warning("{}", odd);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/units.h"
 #include "sim_server/mesh/bounding_box.h"
 
 namespace palpate::sim {
@@ -23,7 +24,6 @@ constexpr double kMaxDrag = 3.0, kMaxBend = 0.5;
 // Contact linearisations a step may use, on its path and to settle with other tools, before it answers from
 // where it got to.
 constexpr int kMaxIterations = 400, kMaxSettling = 400;
-constexpr double kMaxDistance = 1e3;  // m
 
 /// How much of the tool's axis can be near the organ, m.
 double longest_axis(const Tool& tool, std::span<const Vec3> rest) {
@@ -121,7 +121,7 @@ void ToolContact::move_to(const ToolPose& pose, ToolTissue tissue) {
 
 /// False of a position that no tool has.
 bool ToolContact::is_tame(const ToolPose& pose) noexcept {
-  return pose.p_W.allFinite() && pose.p_W.cwiseAbs().maxCoeff() <= kMaxDistance &&
+  return pose.p_W.allFinite() && pose.p_W.cwiseAbs().maxCoeff() <= kMaxCoordinate &&
          pose.q_W.coeffs().allFinite();
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/ranges.h>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -19,7 +18,6 @@ namespace {
 
 // |6V| of a flat tetrahedron, relative to the cube of its longest edge: rounding leaves about 1e-16.
 constexpr double kFlat = 1e-12;
-constexpr double kDegrees = 180 / std::numbers::pi;  // in a radian
 
 std::string text(const Vec3& x) {
   return fmt::format("({:g}, {:g}, {:g})", x[0], x[1], x[2]);
@@ -229,7 +227,7 @@ void find_slivers(const TetMesh& mesh, std::vector<MeshFault>& all) {
            "{:.0f} times the sub-steps (with `rayleigh_stiffness` up to {:.0f} times), and equations are "
            "as much as {:.0f} times worse conditioned",
            worst, fmt::join(mesh.tetrahedra[worst], " "), text(mesh.vertices[mesh.tetrahedra[worst][0]]),
-           least * kDegrees, kSliver * kDegrees, 1e3 * shortest, shortest / middle,
+           least / kDegree, kSliver / kDegree, 1e3 * shortest, shortest / middle,
            std::sqrt(middle / shortest), middle / shortest, middle / shortest),
        "mesh it again with optimisation (Gmsh: `-optimize_netgen`), its surface too if that has slivers "
        "(`ClassifySurfaces`)"});

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "common/units.h"
 #include "sim_server/mesh/tet_mesh.h"
 
 namespace palpate::sim {
@@ -44,7 +45,7 @@ void require_usable(const MeshFaults& faults, const std::string& source);
 /// A tetrahedron of a smaller dihedral angle is a sliver: its heights are about 1/40 of a good one's, as
 /// sin(1 degree) to sin(45). Meshes that were optimised, surface and all, have no such angle (those of Gmsh
 /// that were tried: above 11 degrees).
-constexpr double kSliver = 1.7453292519943295e-2;  // rad: 1 degree
+constexpr double kSliver = kDegree;
 
 /// A sentence that names the likely unit, where a mesh in metres is longer than 5 m or shorter than 5 mm;
 /// else empty.

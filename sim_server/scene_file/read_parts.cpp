@@ -5,6 +5,7 @@
 
 #include "common/error.h"
 #include "common/text.h"
+#include "common/units.h"
 
 namespace palpate::sim {
 namespace {
@@ -78,7 +79,8 @@ Region read_region(const Config& config, const std::string& section) {
   }
   region.surface_tag = config.text("surface_tag", "");
   if (config.has("center") || config.has("radius"))
-    region.ball = Ball{config.vector("center", {.unit = "m"}), config.number("radius", {1e-9, 1e3, "m"})};
+    region.ball =
+        Ball{config.vector("center", {.unit = "m"}), config.number("radius", {1e-9, kMaxCoordinate, "m"})};
   const int given = region.box.has_value() + region.ball.has_value() + !region.surface_tag.empty();
   if (given != 1)
     fail("{}: {} needs one of `box`, `surface_tag`, or `center` with `radius`, and has {}", region.where,
@@ -100,7 +102,9 @@ HeldAxes read_axes(const Config& config) {
 }
 
 Load read_load(const Config& config) {
-  constexpr double kFast = 1e4, kHard = 1e12, kStrong = 1e9, kFar = 1e3;
+  // What no body survives: some 1000 times gravity, the largest Young's modulus a scene may have, and such a
+  // pressure on 10 cm2.
+  constexpr double kFast = 1e4, kHard = 1e12, kStrong = 1e9;  // m/s2, Pa, N
   Load load{};
   int kinds = 0;
   const auto vector = [&](const char* key, Load::Kind kind, double most, const char* unit) {
@@ -112,7 +116,7 @@ Load read_load(const Config& config) {
   vector("gravity", Load::Kind::kGravity, kFast, "m/s2");
   vector("traction", Load::Kind::kTraction, kHard, "Pa");
   vector("force", Load::Kind::kForce, kStrong, "N");
-  vector("displacement", Load::Kind::kDisplacement, kFar, "m");
+  vector("displacement", Load::Kind::kDisplacement, kMaxCoordinate, "m");
   if (config.has("pressure")) {
     load.kind = Load::Kind::kPressure;
     load.pressure = config.number("pressure", {-kHard, kHard, "Pa"});

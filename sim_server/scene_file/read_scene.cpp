@@ -6,6 +6,7 @@
 #include "common/config.h"
 #include "common/error.h"
 #include "common/log.h"
+#include "common/units.h"
 #include "sim_server/models/deformation_models.h"
 #include "sim_server/scene_file/read_cutting.h"
 #include "sim_server/scene_file/read_inclusions.h"
@@ -167,7 +168,7 @@ void read_shape(const Config& config, Tool& tool) {
     tool.length = config.number("length", {1e-4, 0.5, "m"});
   } else if (shape == "trocar") {
     Tool::Trocar trocar;
-    trocar.pivot_W = config.vector("pivot", {-1e3, 1e3, "m"});
+    trocar.pivot_W = config.vector("pivot", {-kMaxCoordinate, kMaxCoordinate, "m"});
     trocar.shaft_radius =
         config.number("shaft_radius", {1e-5, 0.05, "m"}, std::min(trocar.shaft_radius, tool.radius));
     if (trocar.shaft_radius > tool.radius)

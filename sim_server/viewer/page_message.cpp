@@ -3,12 +3,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "common/units.h"
+
 namespace palpate::sim {
 namespace {
 
 using Parsed = nlohmann::json;
 
-constexpr double kMaxDistance = 1e3;       // m
 constexpr std::size_t kLongestName = 256;  // of a token, a scene, a field
 constexpr int kDeepest = 4;                // of a message that is one of ours
 
@@ -42,7 +43,7 @@ std::optional<Vec3> place_in(const Parsed& object) {
     if (!(*found)[i].is_number()) return {};
     p[static_cast<Eigen::Index>(i)] = (*found)[i].get<double>();
   }
-  if (!p.allFinite() || p.cwiseAbs().maxCoeff() > kMaxDistance) return {};
+  if (!p.allFinite() || p.cwiseAbs().maxCoeff() > kMaxCoordinate) return {};
   return p;
 }
 
