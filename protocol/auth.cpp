@@ -9,8 +9,7 @@
 namespace palpate::protocol {
 namespace {
 
-constexpr std::size_t kTagLengthAt = 8, kKeyNumberAt = 9;  // in the header
-constexpr std::int64_t kCookiePeriod = 10'000'000'000;     // ns
+constexpr std::int64_t kCookiePeriod = 10'000'000'000;  // ns
 
 using Label = std::array<char, 24>;
 constexpr Label kToServerLabel{"client to server"}, kToClientLabel{"server to client"}, kPageLabel{"page"};

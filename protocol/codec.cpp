@@ -12,10 +12,9 @@ namespace {
 
 constexpr std::array<std::uint8_t, 4> kMagic{'P', 'L', 'P', 'T'};
 constexpr std::array<std::uint8_t, 2> kReserved{};
-constexpr double kMaxMagnitude = 1e9;   // of any position, speed or force: beyond is a bug or an attack
-constexpr float kMaxAmplitude = 1e6F;   // of a mode, m sqrt(kg), and of its rate
-constexpr float kMaxRelaxation = 1e6F;  // s
-constexpr float kMaxPercent = 1e6F;     // of an error of a force
+constexpr float kMaxAmplitude = 1e6F;                     // of a mode, m sqrt(kg), and of its rate
+constexpr float kMaxRelaxation = 1e6F;                    // s
+constexpr float kMaxPercent = 1e6F;                       // of an error of a force
 constexpr std::int64_t kMaxLead = 10'000'000'000;         // ns
 constexpr std::int64_t kMaxTime = std::int64_t{1} << 61;  // ns, 73 years: times of any two can be subtracted
 
@@ -43,13 +42,13 @@ bool valid(const Bye&) noexcept {
 bool valid(const ToolState& m) noexcept {
   const auto& q = m.q_W;
   const double norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-  return m.tool < kMaxTools && m.tick > 0 && small(m.p_W) && small(m.v_W) && std::abs(norm - 1) < 1e-6 &&
-         is_time(m.t_ns) && m.lead_ns >= 0 && m.lead_ns <= kMaxLead;
+  return m.tool < kMaxTools && m.tick > 0 && small(m.p_W) && small(m.v_W) &&
+         std::abs(norm - 1) < kUnitTolerance && is_time(m.t_ns) && m.lead_ns >= 0 && m.lead_ns <= kMaxLead;
 }
 bool valid(const Linearisation& m) noexcept {
   const double size = m.normal_W.squaredNorm();
-  return m.tangent.cwiseAbs().maxCoeff() <= kMaxMagnitude && (size == 0 || std::abs(size - 1) < 1e-6) &&
-         m.gap >= 0 && m.gap <= kMaxMagnitude;
+  return m.tangent.cwiseAbs().maxCoeff() <= kMaxMagnitude &&
+         (size == 0 || std::abs(size - 1) < kUnitTolerance) && m.gap >= 0 && m.gap <= kMaxMagnitude;
 }
 /// Says nothing of a radius of 0 where there is no surface.
 bool valid(const SurfaceState& m) noexcept {

@@ -7,8 +7,10 @@
 
 namespace palpate::protocol {
 
-constexpr std::uint8_t kProtocolVersion = 2;
-constexpr std::size_t kHeaderBytes = 28;
+constexpr std::uint8_t kProtocolVersion = 2;  ///< grows when the layout of a message changes
+/// Offsets in the header.
+enum HeaderOffset : std::size_t { kVersionAt = 4, kTagLengthAt = 8, kKeyNumberAt = 9 };
+constexpr std::size_t kHeaderBytes = 28;    ///< protocol/README.md, "Header"
 constexpr std::size_t kTagBytes = 16;       ///< room behind the payload for an authentication tag
 constexpr std::size_t kMaxDatagram = 1200;  ///< fits every path that carries IPv6
 constexpr std::size_t kHelloPayload = 256;  ///< Hello is padded to this, more than any answer to it
@@ -36,7 +38,7 @@ enum class Verdict : std::uint8_t {
   kTool,       ///< of another tool than the session's
   kDirection,  ///< a message that only the other end sends
 };
-constexpr std::size_t kVerdicts = 12;
+constexpr std::size_t kVerdicts = static_cast<std::size_t>(Verdict::kDirection) + 1;  ///< the last, and 0
 
 /// "tag" of kTag, and so on: a key for reports.
 const char* name_of(Verdict verdict) noexcept;

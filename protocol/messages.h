@@ -33,6 +33,12 @@ enum class RefuseReason : std::uint8_t {
   kVersion = 3,         ///< the server speaks only the version of this datagram
 };
 
+/// Largest position, speed, force or tangent on the wire, m, m/s, N, N/m: what is larger is a bug or an
+/// attack.
+constexpr double kMaxMagnitude = 1e9;
+/// How far the square of a unit vector or quaternion may be from 1 on the wire.
+constexpr double kUnitTolerance = 1e-6;
+
 /// Drawn at random, once; on the wire 16 bytes.
 using Nonce = std::array<std::uint64_t, 2>;
 /// Number that a server sends to an address and expects back from there; on the wire 16 bytes.
@@ -173,7 +179,7 @@ struct ModalLoads {
   /// Returns how many of `modes`, the slowest first, have room for loads, beside all other parts but
   /// "relaxed" (75: 10; up to 53: all).
   static constexpr std::size_t room(std::size_t modes) { return std::min(modes, 160 - 2 * modes); }
-  std::uint8_t count = 0;  ///< of modes, the slowest first; on the others, nothing is told
+  std::uint8_t count = 0;                           ///< of modes, the slowest first; none for the others
   std::array<float, kMaxPublishedModes> load = {};  ///< of the first `count`, N/sqrt(kg)
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
@@ -185,7 +191,8 @@ struct ModalLoads {
 /// Viscous memory of a body that moves and relaxes, in addition to its `ModalState`. Each sample contains one
 /// part of it and the next sample the next part, as all of it would not fit into a datagram.
 struct RelaxedState {
-  static constexpr std::size_t kMostAmplitudes = 75, kMostForces = 16;  ///< in one sample
+  static constexpr std::size_t kMostAmplitudes = kMaxPublishedModes;  ///< in one sample: a term of all modes
+  static constexpr std::size_t kMostForces = 16;                      ///< in one sample
   /// The Prony series, at most `kMostRelaxations` terms: share of the stress at once, and time, s.
   std::uint8_t terms = 0;
   std::array<float, kMostRelaxations> fraction = {}, time = {};
@@ -284,7 +291,9 @@ struct ForceSample {
 /// protocol/surface_pages.h. Sent once per request, and never changes.
 struct SurfacePage {
   static constexpr MessageType kType = MessageType::kSurfacePage;
-  static constexpr std::size_t kValues = 225;
+  /// Vertices of a tile. Six would make 18 x 18 floats, more than `kMaxDatagram` bytes.
+  static constexpr std::size_t kCluster = 5;
+  static constexpr std::size_t kValues = 3 * kCluster * 3 * kCluster;  ///< of a tile, row by row
   std::uint8_t tool = 0;
   std::uint32_t version = 0;  ///< of the model
   std::uint32_t page = 0;     ///< which
@@ -300,6 +309,7 @@ struct SurfacePage {
 /// changes nothing.
 struct Telemetry {
   static constexpr MessageType kType = MessageType::kTelemetry;
+  /// A full message has 218 + 4 x 24 x (1 + 8) bytes and fits into `kMaxDatagram` with header and tag.
   static constexpr std::size_t kMostTicks = 24, kMostLaws = 8, kNameBytes = 32;
   /// Bits of `flags`.
   enum Flag : std::uint16_t {
@@ -314,9 +324,9 @@ struct Telemetry {
   std::uint8_t tool = 0;
   std::uint16_t flags = 0;
   std::int64_t t_ns = 0;    ///< of the newest tick, on the client's own clock
-  std::uint32_t dt_ns = 0;  ///< between two of the ticks told
+  std::uint32_t dt_ns = 0;  ///< between two of the ticks below
   Vec3 p_W = Vec3::Zero();  ///< where the tool is by now, m
-  Vec3 f_W = Vec3::Zero();  ///< force that is felt there, N
+  Vec3 f_W = Vec3::Zero();  ///< rendered force there, N
   std::int64_t age_ns = 0;  ///< of the newest sample: the largest since the message before
   struct Loop {
     std::uint32_t period_ns = 0;          ///< of the loop since the message before, mean
@@ -332,13 +342,14 @@ struct Telemetry {
   };
   Interventions interventions{};
   Name device = {};
-  Name rendered_law = {};  ///< the law that is felt; behind a colon, which one stands in
+  Name rendered_law = {};  ///< the rendered law; behind a colon, its substitute
   /// The law of column `named`, and its mean error so far, %, below 0: not known. Another one in each
   /// message.
   std::uint8_t named = 0;
   Name name = {};
   float error_percent = -1;
-  /// The ticks, the oldest first: the force felt, and by each law that runs beside, N. Sizes, not vectors.
+  /// The ticks, the oldest first: the rendered force, and by each law that runs beside, N. Sizes, not
+  /// vectors.
   std::uint8_t laws = 0, count = 0;
   std::array<float, kMostTicks> rendered = {};
   std::array<float, kMostTicks* kMostLaws> by_law = {};  ///< `laws` of a tick in a row

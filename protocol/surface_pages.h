@@ -28,9 +28,9 @@ constexpr std::uint32_t kMostSurfaceVertices = 20'000;
 
 /// The pages of a model of so many vertices and triangles.
 struct SurfacePages {
-  static constexpr std::uint32_t kCluster = 5, kPerPage = SurfacePage::kValues / 3;
+  static constexpr std::uint32_t kCluster = SurfacePage::kCluster;
+  static constexpr std::uint32_t kPerPage = SurfacePage::kValues / 3;             ///< vertices, or triangles
   static constexpr std::uint32_t kModes = SurfacePage::kValues / (3 * kCluster);  ///< on a page of shapes
-  static_assert(3 * kCluster * 3 * kCluster == SurfacePage::kValues);
   /// Added to the number of a page that is asked for before the server knows it: it will, ask again later.
   /// Its values are 0.
   static constexpr std::uint32_t kNotYet = 1U << 31U;

@@ -8,7 +8,8 @@ namespace palpate::client {
 
 /// Kind of reference for the force between two samples, the least accurate first.
 enum class ReferenceKind { kLine, kHermite, kContact };
-inline constexpr std::size_t kReferenceKinds = 3;
+inline constexpr std::size_t kReferenceKinds =
+    static_cast<std::size_t>(ReferenceKind::kContact) + 1;  // the last, and 0
 std::string_view name_of(ReferenceKind kind) noexcept;
 
 /// A tick between two samples, with the contact that was solved for it (`FollowedContact`).

@@ -8,7 +8,6 @@ using namespace protocol;
 namespace {
 
 constexpr std::size_t kMost = 1000;  // runs, and sessions of one
-constexpr std::size_t kVersionByte = 4;
 
 template <class Count>
 std::uint64_t sum(const std::vector<CapturedLink>& links, Count count) {
@@ -44,7 +43,7 @@ std::optional<std::size_t> CaptureSorter::sort(const CapturedDatagram& captured,
   if (verdict == Verdict::kTooShort || verdict == Verdict::kNotOurs) return {};
   if (verdict != Verdict::kAccepted) {
     ++refused_;
-    if (verdict == Verdict::kVersion) other_version_ = std::to_integer<int>(captured.bytes[kVersionByte]);
+    if (verdict == Verdict::kVersion) other_version_ = std::to_integer<int>(captured.bytes[kVersionAt]);
     return {};
   }
   ++ours_;

@@ -11,7 +11,8 @@
 
 namespace palpate::client {
 
-constexpr std::size_t kMaxLaws = 8;  ///< scored side by side
+/// Laws scored side by side: as many as a page can show.
+constexpr std::size_t kMaxLaws = protocol::Telemetry::kMostLaws;
 
 /// Errors of all scored laws in one stretch of time. Adds up, for `Timeline`.
 struct ErrorSums {

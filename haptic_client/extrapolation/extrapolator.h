@@ -70,9 +70,9 @@ inline Vec3 without_pull(const Vec3& f, const Vec3& rendered) noexcept {
 /// True if a law may use this part of a sample: it is within the bounds of the protocol, what a server can
 /// mean in SI units.
 inline bool usable(const Linearisation& l) noexcept {
-  const auto bounded = [](const auto& m) { return (m.array().abs() <= 1e9).all(); };
+  const auto bounded = [](const auto& m) { return (m.array().abs() <= protocol::kMaxMagnitude).all(); };
   return bounded(l.p_W) && bounded(l.f_W) && bounded(l.tangent) && bounded(l.normal_W) && l.gap >= 0 &&
-         l.gap <= 1e9;
+         l.gap <= protocol::kMaxMagnitude;
 }
 inline bool usable(const Surface& s) noexcept {
   const Tool& tool = s.tool;
@@ -81,13 +81,13 @@ inline bool usable(const Surface& s) noexcept {
   const auto n = static_cast<std::size_t>(modes.count);
   return modes.count >= 0 && n <= modes.q.size() &&
          std::all_of(modes.q.begin(), modes.q.begin() + n, bounded) &&
-         std::all_of(modes.v.begin(), modes.v.begin() + n, bounded) && (s.shift.array().abs() <= 1e9).all() &&
-         tool.is_sphere() && tool.radius > 0 && tool.radius <= 1 && tool.friction >= 0 &&
-         tool.friction <= 10 && s.tool_compliance >= 0 && s.tool_compliance <= 1e6 &&
-         protocol::valid(s.relaxed) && protocol::valid(s.modal_loads);
+         std::all_of(modes.v.begin(), modes.v.begin() + n, bounded) &&
+         (s.shift.array().abs() <= protocol::kMaxMagnitude).all() && tool.is_sphere() && tool.radius > 0 &&
+         tool.radius <= 1 && tool.friction >= 0 && tool.friction <= 10 && s.tool_compliance >= 0 &&
+         s.tool_compliance <= 1e6 && protocol::valid(s.relaxed) && protocol::valid(s.modal_loads);
 }
 inline bool usable(const OtherTools& o) noexcept {
-  return (o.v_W.array().abs() <= 1e9).all() && (o.compliance.array().abs() <= 1e6).all();
+  return (o.v_W.array().abs() <= protocol::kMaxMagnitude).all() && (o.compliance.array().abs() <= 1e6).all();
 }
 /// The sample without those parts that are not.
 inline Sample with_usable_parts(Sample sample) noexcept {

@@ -10,9 +10,6 @@ using protocol::ToolState;
 
 namespace {
 
-constexpr double kMaxDistance = 1e9;  // m, m/s: as in the protocol
-constexpr double kUnit = 1e-6;        // how far a quaternion's square may be from 1: as there
-
 /// True if a bit of the C interface is that of the message.
 constexpr bool same(int bit, std::uint32_t flag) {
   return static_cast<std::uint32_t>(bit) == flag;
@@ -33,7 +30,7 @@ void write(const Vec3& from, double (&to)[3]) noexcept {
 }
 
 bool carried(const double (&v)[3]) noexcept {
-  return std::all_of(v, v + 3, [](double x) { return std::abs(x) <= kMaxDistance; });
+  return std::all_of(v, v + 3, [](double x) { return std::abs(x) <= protocol::kMaxMagnitude; });
 }
 
 }  // namespace
@@ -82,7 +79,7 @@ std::optional<ToolState> read_tool_state(const palpate_tool_state& from) noexcep
   for (const double x : to.q_W) square += x * x;
   if (square == 0)
     to.q_W = {1, 0, 0, 0};
-  else if (!(std::abs(square - 1) < kUnit))
+  else if (!(std::abs(square - 1) < protocol::kUnitTolerance))
     return {};
   return to;
 }

@@ -20,6 +20,7 @@ return {
     ["ToolState.kNoPage"] = 4294967295,
     ["RelaxedState.kMostAmplitudes"] = 75,
     ["RelaxedState.kMostForces"] = 16,
+    ["SurfacePage.kCluster"] = 5,
     ["SurfacePage.kValues"] = 225,
     ["Telemetry.kMostTicks"] = 24,
     ["Telemetry.kMostLaws"] = 8,
@@ -170,7 +171,7 @@ return {
       },
     },
     ModalLoads = {
-      {name = "count", type = "u8", about = "of modes, the slowest first; on the others, nothing is told"},
+      {name = "count", type = "u8", about = "of modes, the slowest first; none for the others"},
       {
         count = {"count"},
         most = 75,
@@ -333,9 +334,9 @@ return {
         flags = {{"has_motors", 1}, {"fault", 2}, {"clutched", 4}, {"device_lost", 8}, {"fading", 16}, {"paused", 32}},
       },
       {name = "t", type = "i64", unit = "ns", about = "of the newest tick, on the client's own clock"},
-      {name = "dt", type = "u32", unit = "ns", about = "between two of the ticks told"},
+      {name = "dt", type = "u32", unit = "ns", about = "between two of the ticks below"},
       {name = "p", type = "f64", parts = {"x", "y", "z"}, unit = "m", about = "where the tool is by now, m"},
-      {name = "f", type = "f64", parts = {"x", "y", "z"}, unit = "N", about = "force that is felt there, N"},
+      {name = "f", type = "f64", parts = {"x", "y", "z"}, unit = "N", about = "rendered force there, N"},
       {name = "age", type = "i64", unit = "ns", about = "of the newest sample: the largest since the message before"},
       {name = "loop.period", type = "u32", unit = "ns", about = "of the loop since the message before, mean"},
       {name = "loop.longest_period", type = "u32", unit = "ns", about = "and longest"},
@@ -347,12 +348,7 @@ return {
       {name = "interventions.slewed", type = "u32"},
       {name = "interventions.damped", type = "u32"},
       {name = "device", type = "text", size = 32},
-      {
-        name = "rendered_law",
-        type = "text",
-        size = 32,
-        about = "the law that is felt; behind a colon, which one stands in",
-      },
+      {name = "rendered_law", type = "text", size = 32, about = "the rendered law; behind a colon, its substitute"},
       {
         name = "named",
         type = "u8",
@@ -363,12 +359,12 @@ return {
       {
         name = "laws",
         type = "u8",
-        about = "The ticks, the oldest first: the force felt, and by each law that runs beside, N. Sizes, not vectors.",
+        about = "The ticks, the oldest first: the rendered force, and by each law that runs beside, N. Sizes, not vectors.",
       },
       {
         name = "count",
         type = "u8",
-        about = "The ticks, the oldest first: the force felt, and by each law that runs beside, N. Sizes, not vectors.",
+        about = "The ticks, the oldest first: the rendered force, and by each law that runs beside, N. Sizes, not vectors.",
       },
       {count = {"count"}, most = 24, steps = {{name = "rendered", type = "f32", unit = "N"}}},
       {

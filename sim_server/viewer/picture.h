@@ -10,6 +10,7 @@
 #include "common/contact/tool.h"
 #include "common/contact/vertex_load.h"
 #include "common/discretisation_error.h"
+#include "protocol/messages.h"
 #include "sim_server/mesh/tet_mesh.h"
 
 namespace palpate::sim {
@@ -18,8 +19,8 @@ namespace palpate::sim {
 struct OrganShape {
   std::vector<Vec3> rest;           ///< (n), m, world
   std::vector<Triangle> triangles;  ///< (m), outward
-  std::vector<std::uint8_t> flags;  ///< (n), bits of these
-  static constexpr std::uint8_t kFixed = 1, kInReach = 2;
+  enum Flag : std::uint8_t { kFixed = 1, kInReach = 2 };
+  std::vector<std::uint8_t> flags;  ///< (n), bits of `Flag`
 };
 
 /// Facts of the scene that the page gets before anything moves.
@@ -96,8 +97,11 @@ struct PagePointer {
 
 /// State that only the client of a tool knows, about ten times a second while a page is open.
 struct SeenClient {
-  static constexpr std::size_t kMostLaws = 16, kMostInterventions = 16, kMostStates = 8;
-  using Name = std::array<char, 32>;  ///< ended by 0
+  static constexpr std::size_t kMostLaws = protocol::Telemetry::kMostLaws;
+  static constexpr std::size_t kMostInterventions =  // all that the message counts
+      sizeof(protocol::Telemetry::Interventions) / sizeof(std::uint32_t);
+  static constexpr std::size_t kMostStates = 8;  ///< at least one for each flag of `Telemetry` but the motors
+  using Name = std::array<char, 32>;             ///< ended by 0
   std::uint8_t tool = 0, laws = 0, interventions = 0, states = 0;
   Name law{};  ///< the one felt; behind a colon, which one stands in
   std::array<Name, kMostLaws> law_names{};
@@ -115,7 +119,7 @@ struct SeenClient {
 
 /// A stretch of a client's ticks: magnitudes of forces, N.
 struct ClientTicks {
-  static constexpr std::size_t kMost = 128;
+  static constexpr std::size_t kMost = protocol::Telemetry::kMostTicks;
   std::uint8_t tool = 0, laws = 0;
   std::uint32_t count = 0;
   double t = 0;  ///< s, of the first, as `Picture::t`
