@@ -12,4 +12,8 @@ constexpr Time kOutage = std::chrono::milliseconds(300);
 /// blow.
 constexpr double kLongestTick = 0.01;
 
+/// Two ticks further apart than this do not follow each other: between them the loop was held up. A fifth
+/// more than the period of the slowest loop, 100 Hz.
+constexpr Time kTickGap = std::chrono::milliseconds(12);
+
 }  // namespace palpate

@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/ages.h"
+#include "haptic_client/extrapolation/local_contact.h"
+
 namespace palpate::client {
 namespace {
 
-constexpr double kNoPath = 1e-9;       // m: the tool rests
-constexpr double kLeastDepth = 1e-7;   // m: a plane that is met by less says nothing of how force grows
-constexpr double kMostPower = 3;       // of the depth
-constexpr double kMostCorrection = 3;  // as `LocalContact` corrects
+constexpr double kNoPath = 1e-9;      // m: the tool rests
+constexpr double kLeastDepth = 1e-7;  // m: a plane that is met by less says nothing of how force grows
+constexpr double kMostPower = 3;      // of the depth
 // How far the model may be off at a sample: of the larger force there, or of the largest at both.
-constexpr double kBelievable = 0.5, kAlways = 0.02;
-constexpr double kTickReach = 1e-3;                       // m: how far the tangent of a tick leads
-constexpr Time kTickGap = std::chrono::milliseconds(12);  // longer than any tick
+constexpr double kBelievable = LocalContact::kBelievable, kAlways = 0.02;
 
 double smooth(double s) {
   return s * s * (3 - 2 * s);
@@ -144,7 +144,7 @@ bool BetweenSamples::ends_agree(const PathTick& last) noexcept {
     return false;
   const auto near = [&](const PathTick& tick, const Sample& sample) {
     return (tick.t > sample.t ? tick.t - sample.t : sample.t - tick.t) <= kTickGap &&
-           (sample.p - organ(sample.t) - on_organ(tick)).norm() <= kTickReach;
+           (sample.p - organ(sample.t) - on_organ(tick)).norm() <= LocalContact::kTangentReach;
   };
   if (!near(*first_, before_) || !near(last, after_)) return false;
   ends_[0] = end_of(*first_, before_);
@@ -157,7 +157,7 @@ bool BetweenSamples::ends_agree(const PathTick& last) noexcept {
 }
 
 Vec3 BetweenSamples::corrected(const End& end, const Vec3& local) noexcept {
-  return end.kappa * local + std::min(kMostCorrection, local.norm() / end.size) * end.across;
+  return end.kappa * local + std::min(LocalContact::kMostCorrection, local.norm() / end.size) * end.across;
 }
 
 Vec3 BetweenSamples::contact(const PathTick& tick) const noexcept {

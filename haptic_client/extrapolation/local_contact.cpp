@@ -4,19 +4,16 @@
 
 namespace palpate::client {
 namespace {
-constexpr double kMostCorrection = 3;  // factor on the stiffness of the local model, either way
 // Of the largest force: below it, F_loc says little of how wrong the model is.
 constexpr double kDoubt = 0.02;
 constexpr double kFirm = 0.7;  // of the largest force: a touch that tells of the factor where tissue swings
 constexpr double kFraction = 0.25, kMaxChange = 0.2;  // and how much of what it tells counts
-constexpr double kTangentReach = 1e-3;                // m: how far a tangent leads
-// How far the model may be off at the sample, of the larger force and at all, to be believed elsewhere.
-constexpr double kBelievable = 0.5, kAlways = 0.1;  // -, N
+constexpr double kAlways = 0.1;                       // N: an error that is never too large
 
 constexpr std::uint64_t kNoSolve = ~std::uint64_t{0};
 
 bool believable(const Vec3& local, const Vec3& right) noexcept {
-  return (local - right).norm() <= kBelievable * std::max(local.norm(), right.norm()) + kAlways;
+  return (local - right).norm() <= LocalContact::kBelievable * std::max(local.norm(), right.norm()) + kAlways;
 }
 }  // namespace
 

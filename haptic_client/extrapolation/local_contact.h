@@ -28,6 +28,11 @@ namespace palpate::client {
 /// tool expected to touch 140 us.
 class LocalContact : public Extrapolator {
  public:
+  static constexpr double kMostCorrection = 3;   ///< factor on the stiffness of the local model, either way
+  static constexpr double kTangentReach = 1e-3;  ///< m from its place: a tangent is not used further
+  /// Error of the model at the sample, of the larger force: with more of it, it is not used elsewhere.
+  static constexpr double kBelievable = 0.5;
+
   void update(const Sample& sample) noexcept override;
   void restart() noexcept override;
   void start_tick(Time now) noexcept override { now_ = now; }

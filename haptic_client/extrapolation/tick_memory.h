@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "common/time.h"
+#include "common/ages.h"
 
 namespace palpate::client {
 
@@ -25,7 +25,7 @@ class TickMemory {
   Entry* at(Time t) noexcept {
     for (std::size_t back = 1; back <= std::min(written_, kTicks); ++back) {
       Row& row = ring_[(written_ - back) % kTicks];
-      if (row.t <= t) return t - row.t <= kLongestGap ? &row.entry : nullptr;
+      if (row.t <= t) return t - row.t <= kTickGap ? &row.entry : nullptr;
     }
     return nullptr;
   }
@@ -43,7 +43,6 @@ class TickMemory {
 
  private:
   static constexpr std::size_t kTicks = 1024;  // a quarter of a second at 4 kHz, a second at 1 kHz
-  static constexpr Time kLongestGap = std::chrono::milliseconds(12);  // beyond, the loop was held up
   struct Row {
     Time t;
     Entry entry;
