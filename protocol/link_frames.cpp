@@ -1,6 +1,7 @@
 #include "protocol/link_frames.h"
 
 #include <algorithm>
+#include <netinet/in.h>
 #include <optional>
 
 namespace palpate::protocol {
@@ -9,11 +10,8 @@ namespace {
 using Bytes = std::span<const std::byte>;
 
 constexpr std::uint16_t kEtherIpv4 = 0x0800, kEtherIpv6 = 0x86dd, kEtherNone = 0;
-constexpr std::uint8_t kUdp = 17;  // number of the protocol (IANA)
 // Bytes (RFC 791, 8200, 768).
 constexpr std::size_t kIpv4Header = 20, kIpv6Header = 40, kUdpHeader = 8, kMaxLengthField = 65535;
-// IPv6 extension headers that stand in front of what is carried.
-constexpr std::uint8_t kHopByHop = 0, kRouting = 43, kFragmentHeader = 44, kDestinationOptions = 60;
 
 std::uint8_t u8(Bytes bytes, std::size_t at) {
   return std::to_integer<std::uint8_t>(bytes[at]);
@@ -97,7 +95,7 @@ FrameVerdict parse_ipv4(Bytes packet, UdpFrame& out) {
   if (packet.size() < kIpv4Header) return FrameVerdict::kMalformed;
   const std::size_t header = 4 * (u8(packet, 0) & 0xfu), total = u16(packet, 2);
   if (u8(packet, 0) >> 4 != 4 || header < kIpv4Header) return FrameVerdict::kMalformed;
-  if (u8(packet, 9) != kUdp) return FrameVerdict::kOtherTraffic;
+  if (u8(packet, 9) != IPPROTO_UDP) return FrameVerdict::kOtherTraffic;
   if (total < header || packet.size() < header) return FrameVerdict::kMalformed;
   if ((u16(packet, 6) & 0x3fff) != 0) return FrameVerdict::kFragment;  // more fragments, or an offset
   std::copy_n(packet.begin() + 12, 4, reinterpret_cast<std::byte*>(out.from.address.data()));
@@ -106,24 +104,24 @@ FrameVerdict parse_ipv4(Bytes packet, UdpFrame& out) {
 }
 
 bool is_extension(std::uint8_t header) {
-  return header == kHopByHop || header == kRouting || header == kFragmentHeader ||
-         header == kDestinationOptions;
+  return header == IPPROTO_HOPOPTS || header == IPPROTO_ROUTING || header == IPPROTO_FRAGMENT ||
+         header == IPPROTO_DSTOPTS;
 }
 
 /// Moves `at` behind the extension headers and `next` to what they carry. `kDatagram`: it is UDP.
 FrameVerdict skip_extensions(Bytes packet, std::uint8_t& next, std::size_t& at) {
   while (is_extension(next)) {
     if (packet.size() - at < 8) return FrameVerdict::kMalformed;
-    const bool fragment = next == kFragmentHeader;
+    const bool fragment = next == IPPROTO_FRAGMENT;
     const std::size_t size = fragment ? 8 : 8 * (u8(packet, at + 1) + std::size_t{1});
     if (packet.size() - at < size) return FrameVerdict::kMalformed;
     next = u8(packet, at);
-    if (fragment && (u16(packet, at + 2) & 0xfff9) != 0 && (next == kUdp || is_extension(next))) {
+    if (fragment && (u16(packet, at + 2) & 0xfff9) != 0 && (next == IPPROTO_UDP || is_extension(next))) {
       return FrameVerdict::kFragment;
     }
     at += size;
   }
-  return next == kUdp ? FrameVerdict::kDatagram : FrameVerdict::kOtherTraffic;
+  return next == IPPROTO_UDP ? FrameVerdict::kDatagram : FrameVerdict::kOtherTraffic;
 }
 
 FrameVerdict parse_ipv6(Bytes packet, UdpFrame& out) {
@@ -158,7 +156,7 @@ void put_ipv4(const Endpoint& from, const Endpoint& to, std::size_t total, std::
   put_u16(out, 0, 0x4500);  // version 4, five words of header
   put_u16(out, 2, total);
   put_u16(out, 6, 0x4000);  // do not fragment
-  put_u16(out, 8, 64 << 8 | kUdp);
+  put_u16(out, 8, 64 << 8 | IPPROTO_UDP);
   std::copy_n(reinterpret_cast<const std::byte*>(from.address.data()), 4, out.begin() + 12);
   std::copy_n(reinterpret_cast<const std::byte*>(to.address.data()), 4, out.begin() + 16);
   put_u16(out, 10, checksum(add_words(out, 0)));
@@ -168,7 +166,7 @@ void put_ipv4(const Endpoint& from, const Endpoint& to, std::size_t total, std::
 void put_ipv6(const Endpoint& from, const Endpoint& to, std::size_t carried, std::span<std::byte> out) {
   put_u16(out, 0, 0x6000);  // version 6
   put_u16(out, 4, carried);
-  put_u16(out, 6, kUdp << 8 | 64);
+  put_u16(out, 6, IPPROTO_UDP << 8 | 64);
   std::copy_n(reinterpret_cast<const std::byte*>(from.address.data()), 16, out.begin() + 8);
   std::copy_n(reinterpret_cast<const std::byte*>(to.address.data()), 16, out.begin() + 24);
 }
@@ -234,7 +232,7 @@ std::size_t build_frame(const Endpoint& from, const Endpoint& to, std::span<cons
   if (payload.size() == length) {
     // The pseudo header: both addresses, the protocol and the length.
     const Bytes addresses = from.v6 ? out.subspan(8, 32) : out.subspan(12, 8);
-    const auto rest = static_cast<std::uint32_t>(kUdp + kUdpHeader + length);
+    const auto rest = static_cast<std::uint32_t>(IPPROTO_UDP + kUdpHeader + length);
     const std::size_t sum = checksum(add_words(udp, add_words(addresses, rest)));
     put_u16(udp, 6, sum == 0 ? 0xffff : sum);  // 0 would say that there is none
   }

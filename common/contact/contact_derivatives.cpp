@@ -22,7 +22,7 @@ SimplexHessian hessian_of(const Contact& c, bool pivots, std::span<const Vec3> x
 /// The nodes of the contacts considered: first those that no contact with a force is on, for which there is
 /// no curvature; the tips last.
 void ContactSolver::collect_nodes(int nodes) noexcept {
-  constexpr int kUnseen = -1, kLoaded = -2;  // marks of a node that is not numbered yet
+  enum Mark : int { kUnseen = -1, kLoaded = -2 };  // of a node that is not numbered yet
   second_.nodes.clear();
   const int tools = static_cast<int>(path_.tools.size());
   std::fill_n(second_.slot_of_node.begin(), nodes + tools, kUnseen);

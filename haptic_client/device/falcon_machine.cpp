@@ -9,7 +9,7 @@ using namespace std::chrono_literals;
 using Bytes = std::span<const std::byte>;
 
 // FTDI vendor requests and their values (baud rate = 3 MHz / divisor).
-constexpr std::uint8_t kReset = 0, kModem = 1, kFlow = 2, kBaud = 3, kLine = 4, kLatency = 9;
+enum FtdiRequest : std::uint8_t { kReset = 0, kModem = 1, kFlow = 2, kBaud = 3, kLine = 4, kLatency = 9 };
 constexpr std::uint16_t kPurgeIn = 1, kPurgeOut = 2, kDtrLow = 0x0100, kDtrHigh = 0x0101, kRtsLow = 0x0200;
 constexpr std::uint16_t kBaud9600 = 0x4138, kBaud140k = 0x0015, kBaud1500k = 0x0002, k8N1 = 0x0008;
 constexpr std::uint16_t kLatencyBoot = 16, kLatencyRun = 1;  // ms
@@ -20,13 +20,17 @@ constexpr std::array kReadyForImage{std::byte{0x41}};
 
 constexpr std::uint8_t kVendor = 0x40;  // bmRequestType
 
-void ftdi(UsbTransport& port, std::uint8_t request, std::uint16_t value) {
+void ftdi(UsbTransport& port, FtdiRequest request, std::uint16_t value) {
   port.control({.type = kVendor, .request = request, .value = value});
 }
 
 constexpr Time kProbePeriod = 20ms, kBootPeriod = 60ms, kHandshakePatience = 300ms, kEchoPatience = 500ms;
-constexpr Time kLongestSilence = 1s, kFresh = 50ms, kSearchAgain = 500ms, kLoadAgain = 2s;
-constexpr int kProbes = 25, kBootTries = 100, kLoads = 5;
+constexpr Time kLongestSilence = 1s;                   // without a status packet: opens the device again
+constexpr Time kFresh = 50ms;                          // an older status gives no position
+constexpr Time kSearchAgain = 500ms, kLoadAgain = 2s;  // until a closed device is opened
+// Packets without an answer: for 0.5 s, then the firmware is missing; for 6 s, then the reset is tried again.
+constexpr int kProbes = 25, kBootTries = 100;
+constexpr int kLoads = 5;  // uploads in a row until the image counts as wrong
 constexpr const char* kHomeIt =
     "Falcon: pull the grip fully out, then push it fully in, to home it; if its light stays red, check that "
     "its mains adaptor is plugged in";

@@ -43,7 +43,7 @@ constexpr auto kIds = [] {
   return ids;
 }();
 
-constexpr std::byte kMotion{1}, kButtons{3};                               // numbers of the reports
+enum class ReportNumber : std::uint8_t { kMotion = 1, kButtons = 3 };
 constexpr std::size_t kTranslation = 7, kSixAxes = 13, kLeastButtons = 3;  // bytes, with the report's number
 
 std::uint16_t number_at(std::span<const std::byte> report, std::size_t at) {
@@ -71,8 +71,11 @@ double spacemouse_response(int raw) noexcept {
 
 bool take_spacemouse_report(std::span<const std::byte> report, SpaceMouseState& state) noexcept {
   if (report.empty()) return false;
-  if (report[0] == kButtons && report.size() >= kLeastButtons) state.buttons = number_at(report, 1);
-  if (report[0] != kMotion || (report.size() != kTranslation && report.size() != kSixAxes)) return false;
+  const auto number = static_cast<ReportNumber>(report[0]);
+  if (number == ReportNumber::kButtons && report.size() >= kLeastButtons)
+    state.buttons = number_at(report, 1);
+  if (number != ReportNumber::kMotion || (report.size() != kTranslation && report.size() != kSixAxes))
+    return false;
   const auto axis = [&](std::size_t i) {
     return spacemouse_response(static_cast<std::int16_t>(number_at(report, 1 + 2 * i)));
   };

@@ -25,6 +25,17 @@ enum Job {
   kReturn
 };
 
+/// Errors in INFOG(1), as its manual numbers them.
+enum Infog {
+  kRemote = -1,
+  kSingularPattern = -6,
+  kAlsoTooSmall = -8,
+  kTooSmall = -9,
+  kSingular = -10,
+  kNoMemory = -13,
+  kNotDefinite = -40
+};
+
 constexpr int kWorldOfMpi = -987654;  // MPI_COMM_WORLD, for MUMPS
 constexpr double kMega = 1e6;         // bytes, as MUMPS counts memory
 constexpr int kMoreRoom = 30;         // % beyond what the analysis expects
@@ -167,7 +178,7 @@ void MumpsFactor::analyse(const SparseMatrix& lower, const std::string& where) {
 }
 
 void MumpsFactor::factor(const std::string& where) {
-  constexpr int kTooSmall = -9, kAlsoTooSmall = -8, kMostRoom = 500;  // %
+  constexpr int kMostRoom = 500;  // %
   DMUMPS_STRUC_C& mumps = mumps_->data;
   const auto size = static_cast<Eigen::Index>(stored_.size());
   schur_.resize(size, size);
@@ -213,7 +224,6 @@ void MumpsFactor::take_schur(const std::string& where) {
 }
 
 void MumpsFactor::require(const char* stage, const std::string& where) const {
-  constexpr int kSingular = -10, kSingularPattern = -6, kNotDefinite = -40, kNoMemory = -13, kRemote = -1;
   const int error = mumps_->data.infog[0], detail = mumps_->data.infog[1];
   if (error >= 0) return;
   if (error == kSingular || error == kSingularPattern || error == kNotDefinite) fail_as_singular(where);
@@ -240,7 +250,7 @@ Eigen::MatrixXd MumpsFactor::solve(const Eigen::MatrixXd& b) const {
     mumps_->run(kSolve);
     require("solution", "condense");
   };
-  constexpr int kSolveAll = 0, kForward = 1, kBack = 2;
+  enum Icntl26 : int { kSolveAll = 0, kForward = 1, kBack = 2 };  // how far to solve with a Schur complement
   const auto lower = schur_.triangularView<Eigen::Lower>();
   for (Eigen::Index first = 0; first < b.cols(); first += kAtOnce) {
     const Eigen::Index count = std::min(kAtOnce, b.cols() - first);

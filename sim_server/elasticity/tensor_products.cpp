@@ -6,7 +6,6 @@
 namespace palpate::sim {
 namespace {
 
-constexpr int kEight = 8;
 // Numbers, of 32 edges: tensors are read once, in order, and are more than the nearest cache holds.
 constexpr int kFetchAhead = 288;
 
@@ -122,7 +121,7 @@ template <int kColumns>
                                           const int* __restrict neighbour, const double* __restrict vertex,
                                           const double* __restrict edge, const double* __restrict x,
                                           double* __restrict y) {
-  product<kEight>(n, first_edge, neighbour, vertex, edge, x, y);
+  product<8>(n, first_edge, neighbour, vertex, edge, x, y);
 }
 template <int kStride>
 [[gnu::target("avx2")]] void product_of_one_avx2(int begin, int end, const TensorsInPlace& k,
@@ -158,7 +157,7 @@ void product_of_eight(int n, const TensorsInPlace& k, const double* x, double* y
   if (__builtin_cpu_supports("avx2"))
     return product_avx2(n, k.first_edge, k.neighbour, k.vertex, k.edge, x, y);
 #endif
-  product<kEight>(n, k.first_edge, k.neighbour, k.vertex, k.edge, x, y);
+  product<8>(n, k.first_edge, k.neighbour, k.vertex, k.edge, x, y);
 }
 
 }  // namespace palpate::sim

@@ -26,7 +26,7 @@ namespace {
 // Bytes for each of the file, checks of the mesh included; measured: 5 to 7.5.
 constexpr double kReadingTakes = 8;
 constexpr double kSmallFile = 1e6;  // bytes; to ask for the free memory would take longer than to read it
-constexpr std::int64_t kGmshTriangle = 2, kGmshTetrahedron = 4;  // element types of Gmsh
+enum GmshElement : std::int64_t { kGmshTriangle = 2, kGmshTetrahedron = 4 };
 
 /// How many nodes an element of Gmsh's `type` has; 0 for a type this reader has never heard of.
 int nodes_of_type(std::int64_t type) {

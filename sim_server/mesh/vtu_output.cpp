@@ -11,7 +11,7 @@
 namespace palpate::sim {
 namespace {
 
-constexpr std::uint8_t kVtkTetrahedron = 10, kVtkQuadraticTetrahedron = 24;  // of VTK
+enum VtkCell : std::uint8_t { kVtkTetrahedron = 10, kVtkQuadraticTetrahedron = 24 };
 
 /// Arrays that stand at the end of the file, each after its size.
 class Appended {

@@ -9,8 +9,15 @@
 namespace palpate::sim {
 namespace {
 
-constexpr std::byte kTopology{1}, kSurface{2}, kTicks{3}, kSample{4}, kField{5}, kTriangles{6};
-constexpr double kMost = 65535;
+enum class Kind : std::uint8_t {  // of a message: its first byte
+  kTopology = 1,
+  kSurface = 2,
+  kTicks = 3,
+  kSample = 4,
+  kField = 5,
+  kTriangles = 6,
+};
+constexpr double kMost = std::numeric_limits<std::uint16_t>::max();  // of a coordinate
 
 static_assert(std::endian::native == std::endian::little, "the messages are little-endian");
 
@@ -25,9 +32,9 @@ void append_all(Bytes& out, std::span<const T> values) {
   out.insert(out.end(), bytes.begin(), bytes.end());
 }
 
-void begin(Bytes& out, std::byte kind, std::uint8_t second = 0, std::uint8_t third = 0) {
+void begin(Bytes& out, Kind kind, std::uint8_t second = 0, std::uint8_t third = 0) {
   out.clear();
-  out.insert(out.end(), {kind, std::byte{second}, std::byte{third}, std::byte{0}});
+  out.insert(out.end(), {static_cast<std::byte>(kind), std::byte{second}, std::byte{third}, std::byte{0}});
 }
 
 bool same(std::span<const std::uint16_t> a, std::span<const std::uint16_t> b, std::size_t v) noexcept {
@@ -63,7 +70,7 @@ void quantise(const ViewBox& box, std::span<const float> positions, std::span<st
 }
 
 void write_topology(const OrganShape& organ, const ViewBox& box, std::uint32_t version, Bytes& out) {
-  begin(out, kTopology);
+  begin(out, Kind::kTopology);
   append(out, version);
   append(out, static_cast<std::uint32_t>(organ.rest.size()));
   append(out, static_cast<std::uint32_t>(organ.triangles.size()));
@@ -84,7 +91,7 @@ void write_surface(const SurfaceStamp& stamp, std::span<const std::uint16_t> now
   for (std::size_t v = 0; v < n; ++v) moved += same(now, had, v) ? 0 : 1;
   constexpr std::size_t kNumbered = sizeof(std::uint32_t) + 3 * sizeof(std::uint16_t);
   complete = complete || kNumbered * moved >= now.size_bytes();
-  begin(out, kSurface);
+  begin(out, Kind::kSurface);
   append(out, stamp.version), append(out, stamp.step), append(out, stamp.t);
   append(out, static_cast<std::uint32_t>(complete ? n : moved));
   append(out, static_cast<std::uint32_t>(complete ? 1 : 0));
@@ -108,7 +115,7 @@ void write_triangles(std::uint32_t version, std::span<const Triangle> now, std::
     if (i >= had.size() || now[i] != had[i]) places.push_back(static_cast<std::uint32_t>(i));
   }
   complete = complete || 4 * places.size() >= 3 * now.size();
-  begin(out, kTriangles);
+  begin(out, Kind::kTriangles);
   append(out, version), append(out, static_cast<std::uint32_t>(now.size()));
   append(out, static_cast<std::uint32_t>(complete ? now.size() : places.size()));
   append(out, static_cast<std::uint32_t>(complete ? 1 : 0));
@@ -122,12 +129,12 @@ void write_triangles(std::uint32_t version, std::span<const Triangle> now, std::
 }
 
 void write_sample(std::uint8_t tool, const SeenTool::Sample& sample, Bytes& out) {
-  begin(out, kSample, tool);
+  begin(out, Kind::kSample, tool);
   append(out, sample.t), append(out, sample.force), append(out, sample.flags);
 }
 
 void write_ticks(const ClientTicks& ticks, Bytes& out) {
-  begin(out, kTicks, ticks.tool, ticks.laws);
+  begin(out, Kind::kTicks, ticks.tool, ticks.laws);
   append(out, ticks.count), append(out, ticks.t), append(out, ticks.dt);
   append_all(out, std::span(ticks.rendered).first(ticks.count));
   for (std::size_t k = 0; k < ticks.count; ++k) append_all(out, std::span(ticks.by_law[k]).first(ticks.laws));
@@ -137,7 +144,7 @@ void write_field(std::uint32_t version, std::span<const float> values, Bytes& ou
   constexpr std::uint8_t kStrainEnergy = 1;
   float largest = 0;
   for (const float value : values) largest = std::max(largest, value);
-  begin(out, kField, kStrainEnergy);
+  begin(out, Kind::kField, kStrainEnergy);
   append(out, version), append(out, static_cast<std::uint32_t>(values.size())), append(out, largest);
   for (const float value : values)
     append(out, static_cast<std::uint8_t>(largest > 0 && value > 0 ? 255 * value / largest + 0.5F : 0));
