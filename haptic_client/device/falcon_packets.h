@@ -7,12 +7,14 @@
 #include <optional>
 #include <span>
 
+#include "haptic_client/device/usb_transport.h"
+
 namespace palpate::client {
 
-constexpr std::size_t kFalconPacket = 16;   ///< bytes, `<` to `>`
-constexpr std::size_t kFtdiUsbPacket = 64;  ///< bytes; each one begins with two status bytes
-constexpr std::size_t kFtdiStatus = 2;      ///< bytes
-constexpr int kFalconMaxTorque = 4096;      ///< of a motor command, DAC units
+constexpr std::size_t kFalconPacket = 16;                 ///< bytes, `<` to `>`
+constexpr std::size_t kFtdiUsbPacket = kFullSpeedPacket;  ///< begins with two status bytes
+constexpr std::size_t kFtdiStatus = 2;                    ///< bytes
+constexpr int kFalconMaxTorque = 4096;                    ///< of a motor command, DAC units
 
 /// Host to device.
 struct FalconCommand {

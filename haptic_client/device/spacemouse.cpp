@@ -8,9 +8,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Time kIdle = 100ms, kOpenAgain = 500ms;
+constexpr Time kIdle = 100ms;                                   // without a report: the cap is released
+constexpr Time kOpenAgain = 500ms;                              // between two tries to open
 constexpr std::uint8_t kHidToInterface = 0x21, kSetReport = 9;  // of HID
-constexpr std::size_t kMostReport = 64;                         // bytes
 
 }  // namespace
 
@@ -25,7 +25,7 @@ SpaceMouse::~SpaceMouse() {
 DeviceReading SpaceMouse::read(Time now) noexcept {
   advance(now);
   const bool there = keep_open(now);
-  std::array<std::byte, kMostReport> report;
+  std::array<std::byte, kFullSpeedPacket> report;
   while (const std::size_t size = there ? port_->read(report) : 0) {
     if (take_spacemouse_report({report.data(), size}, state_)) heard_ = now;
   }

@@ -12,7 +12,6 @@ namespace palpate::client {
 namespace {
 
 constexpr unsigned kTimeout = 1000;                          // ms, of OUT and control
-constexpr std::size_t kMostOut = 64;                         // bytes of a packet
 constexpr std::size_t kPending = 4, kReceived = 64;          // IN transfers; packets that wait to be read
 constexpr std::size_t kRequests = 16;                        // on the way at once
 constexpr std::uint8_t kToInterface = 1, kRecipient = 0x1f;  // of bmRequestType
@@ -226,7 +225,7 @@ void UsbPort::control(const UsbRequest& request) noexcept {
   Libusb& u = *usb_;
   if (u.handle == nullptr || u.lost) return;
   const auto free = std::ranges::find_if(u.requests, [](const auto& t) { return !t.flying; });
-  if (free == u.requests.end() || request.data.size() > kMostOut) return u.lose(kFailed);
+  if (free == u.requests.end() || request.data.size() > kFullSpeedPacket) return u.lose(kFailed);
   const bool to_interface = (request.type & kRecipient) == kToInterface;
   const auto index = to_interface ? static_cast<std::uint16_t>(u.interface.number) : request.index;
   unsigned char* const bytes = free->bytes.data();
@@ -241,7 +240,7 @@ void UsbPort::control(const UsbRequest& request) noexcept {
 bool UsbPort::write(std::span<const std::byte> bytes) noexcept {
   Libusb& u = *usb_;
   if (u.handle == nullptr || u.lost || u.out.flying) return false;
-  if (u.interface.out.address == 0 || bytes.size() > kMostOut) return false;
+  if (u.interface.out.address == 0 || bytes.size() > kFullSpeedPacket) return false;
   std::ranges::copy(bytes, reinterpret_cast<std::byte*>(u.out.bytes.data()));
   u.fill(u.out, u.interface.out, bytes.size(), &Libusb::on_out, kTimeout);
   return u.submit(u.out);

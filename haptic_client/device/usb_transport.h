@@ -13,6 +13,9 @@ struct UsbId {
   bool operator==(const UsbId&) const = default;
 };
 
+/// Largest packet of a full-speed device, bytes.
+constexpr std::size_t kFullSpeedPacket = 64;
+
 /// A control request to a device: the four numbers of its set-up packet, and its data.
 struct UsbRequest {
   std::uint8_t type = 0;     ///< bmRequestType, host to device: 0x40 vendor, 0x21 class and interface

@@ -17,6 +17,9 @@ namespace palpate::sim {
 /// thread.
 class Grip {
  public:
+  static constexpr double kFits = 1e-10;  ///< of its reach: largest error of a held vertex
+  static constexpr int kMaxRounds = 30;   ///< of Newton's method
+
   /// `rest`: surface vertices, m. At most `max_nodes`, and 128, are held. Throws `Error` where there is
   /// nothing at `grasp_place`.
   Grip(const ToolSettings& tool, std::span<const Vec3> rest, std::span<const std::array<int, 3>> touchable,

@@ -4,13 +4,6 @@
 #include <algorithm>
 
 namespace palpate::sim {
-namespace {
-
-constexpr double kAllFit = 1e-10;  // of the tool radius, as of one grip
-constexpr int kJointRounds = 30;
-
-}  // namespace
-
 JointGrip::JointGrip(std::span<const ToolContact> tools) {
   int most = 0;
   for (const ToolContact& tool : tools) most += tool.max_held();
@@ -25,8 +18,8 @@ JointGrip::JointGrip(std::span<const ToolContact> tools) {
 void JointGrip::settle(std::span<const ToolContact> tools, Tissue& tissue) {
   gather(tools, tissue);
   if (holders_.size() < 2) return;
-  const double fits = kAllFit * tools[holders_.front().tool].radius();
-  for (int round = 0; round < kJointRounds; ++round) {
+  const double fits = Grip::kFits * tools[holders_.front().tool].radius();
+  for (int round = 0; round < Grip::kMaxRounds; ++round) {
     put_loads(tissue);
     if (misfit(tools, tissue) <= fits) return;
     if ((round == 0 || !tissue.traits.constant_compliance) && !factor(tissue)) return;

@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kBalanced = 0.01;  // relative residual of the last iteration of a step that counts as solved
 constexpr int kMoreIterations = 2;  // times `max_newton`, where the residual does not count as solved by then
-constexpr double kAtRest = 1e-6;    // relative residual of the predictor of a body that rests
 constexpr double kMostColumnBytes = 1e9;  // of columns, when a step begins
 
 /// A body that nothing holds flies.
@@ -156,7 +155,7 @@ FreeMotion Implicit::free_motion(double dt) {
     }
     linearised_loads_ = loads_;
     step_.iterations = dynamics_.solve(external_forces(), 1, settings_.tolerance);
-    if (dynamics_.relative_residual() <= std::max(settings_.tolerance, kAtRest) && !is_linear())
+    if (dynamics_.relative_residual() <= std::max(settings_.tolerance, Dynamics::kAtRest) && !is_linear())
       dynamics_.refactor_if_moved();
     update_surface();
   }

@@ -8,8 +8,8 @@
 namespace palpate::sim {
 namespace {
 constexpr Time kPosePollPeriod = std::chrono::microseconds(200);  // rate 0: how often to look for a new pose
-constexpr Time kPublishPeriod = std::chrono::milliseconds(100);   // of a pause
-constexpr Time kSearchPeriod = std::chrono::milliseconds(100);  // how near a tool is that has not touched yet
+// Between two samples of a pause, and two searches of how near a tool is that has not touched yet.
+constexpr Time kIdlePeriod = std::chrono::milliseconds(100);
 }  // namespace
 
 StepCell& StepCell::operator+=(const StepCell& other) noexcept {
@@ -90,7 +90,7 @@ LoopTurn SimLoop::turn(double dt) noexcept {
 
 void SimLoop::report_paused() noexcept {
   if (now() < next_published_) return;
-  next_published_ = now() + kPublishPeriod;
+  next_published_ = now() + kIdlePeriod;
   bool published = false;
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     if (const auto sample = served_.paused(i, inputs_[i])) {
@@ -133,7 +133,7 @@ void SimLoop::count_beyond(std::size_t tool) noexcept {
 /// For who never touches: how much was missing.
 void SimLoop::measure_distance(Time now) noexcept {
   if (now < next_search_) return;
-  next_search_ = now + kSearchPeriod;
+  next_search_ = now + kIdlePeriod;
   for (std::size_t i = 0; i < stats_.tools.size(); ++i) {
     ToolStats& tool = stats_.tools[i];
     if (tool.contact_steps > 0) continue;

@@ -20,7 +20,7 @@ constexpr std::array<char, 16> kMagic{"palpate set-up\n"};
 constexpr std::uint64_t kVersion = 2;
 constexpr std::uint64_t kMostNumbers = std::uint64_t{1} << 48;  // of a matrix: its bytes can be counted
 constexpr std::string_view kEnding = ".setup", kPartEnding = ".part";
-constexpr std::size_t kRandom = 7;  // of ".XXXXXX"
+constexpr std::size_t kRandom = std::string_view(".XXXXXX").size();
 
 /// KEY.setup.XXXXXX.part
 bool is_part_name(std::string_view name) {

@@ -18,8 +18,8 @@ constexpr double kNegligibleDisplacement = 1e-9, kRemote = 1e-4, kOffset = 1e-7;
 // Relative residuals. Where the last trial step of a step leaves more than the first, velocities mean
 // nothing, and the step ends at rest: each step from there lowers the energy, however far Newton's method is
 // from balance. Where no more than the second is left, and loads change by no more, the linearisation is
-// trusted without a line search. A body whose step began with no more than the third has come to rest.
-constexpr double kAdrift = 0.1, kTrusted = 0.1, kAtRest = 1e-6;
+// trusted without a line search.
+constexpr double kAdrift = 0.1, kTrusted = 0.1;
 
 /// Of a linear law one factor serves for ever, unless the body is cut.
 bool one_factor_serves(const Solid& solid, const DynamicsSettings& settings) {

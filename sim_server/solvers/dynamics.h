@@ -18,6 +18,8 @@ namespace palpate::sim {
 /// elements.
 class Dynamics {
  public:
+  static constexpr double kAtRest = 1e-6;  ///< relative residual of the predictor of a body that rests
+
   /// Starts at rest. Throws `Error`, beginning with `where`, when the held nodes do not hold the body. The
   /// body must outlive this.
   Dynamics(const Solid& solid, std::vector<HeldAxes> held, const DynamicsSettings& settings,

@@ -5,12 +5,12 @@
 
 #include "common/error.h"
 #include "sim_server/mesh/bounding_box.h"
+#include "sim_server/solvers/newton.h"
 
 namespace palpate::sim {
 namespace {
 
-// Line search: the sufficient decrease, and the shortest trial step.
-constexpr double kArmijo = 1e-4, kShortestStep = 1e-4;
+constexpr double kArmijo = 1e-4;  // sufficient decrease in a line search
 // Share of what the supports move by which they are nudged, to find how the residual changes.
 constexpr double kSupportOffset = 1e-7;
 // Share of the size of the body: a force that moves a node by less counts as none.
@@ -110,7 +110,7 @@ class Newton {
     const double before = potential(x), slope = residual.dot(d), norm = residual.norm();
     const std::vector<Vec3> external =
         external_;  // a pressure changes as the body does: the energy is that of this one
-    for (double length = 1; length > kShortestStep; length /= 2) {
+    for (double length = 1; length > kShortestTrialStep; length /= 2) {
       move_along(from, length, d, x);
       external_ = external;
       if (potential(x) <= before - kArmijo * length * slope || residual_at(x).norm() < norm) return true;

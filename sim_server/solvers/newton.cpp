@@ -1,12 +1,6 @@
 #include "sim_server/solvers/newton.h"
 
 namespace palpate::sim {
-namespace {
-
-constexpr double kShortestTrialStep = 1e-4;  // of the search direction
-
-}  // namespace
-
 TrialStep line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& force,
                       const ResidualAlong& residual_along) {
   const double push = std::abs(force.dot(d));

@@ -16,6 +16,9 @@ using ResidualAlong = std::function<Residual(double s)>;
 /// A v for the vectors v (by unknowns) of a solver.
 using LinearMap = std::function<Eigen::VectorXd(const Eigen::VectorXd& v)>;
 
+/// Line searches try no shorter step, of the search direction.
+constexpr double kShortestTrialStep = 1e-4;
+
 /// Outcome of a line search.
 struct TrialStep {
   double length = 0;    ///< s, (0, 1]; 0: no trial step was accepted
