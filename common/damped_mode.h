@@ -2,9 +2,10 @@
 
 namespace palpate {
 
-/// The slow modes of a tissue that a server tells and a client steps: so many at most, and none quicker than
-/// so (rad/s), as the client meets the contact force a tick late; 80 Hz, where its ticks come at 500 Hz.
+/// Largest number of published modes: a page of the spectrum has three values for each.
 constexpr int kMaxPublishedModes = 75;
+/// Highest frequency of a published mode, rad/s (80 Hz). A client applies the contact force one tick late,
+/// which at 500 ticks a second is one radian of it.
 constexpr double kFastestPublishedMode = 500;
 /// Largest damping of a published slow mode (1/s); a more strongly damped one hardly moves within a tick.
 constexpr double kMaxPublishedDamping = 1000;

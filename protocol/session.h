@@ -45,7 +45,7 @@ class ClientSession {
   /// Why the server last said no, until it says yes.
   std::optional<RefuseReason> refused() const noexcept { return refused_; }
 
-  static constexpr Time kHelloPeriod = std::chrono::milliseconds(250);
+  static constexpr Time kHelloPeriod = std::chrono::milliseconds(250);  ///< what a lost Hello costs
   static constexpr std::uint64_t kAnswered = 4;    ///< of the newest Hellos: an answer takes a second at most
   static constexpr Time kSilence = kOutage;        ///< without a sample: ask again
   static constexpr std::uint64_t kMaxSample = 24;  ///< datagrams ahead: 0.8 s at 30 steps a second
@@ -135,7 +135,7 @@ class ServerSessions {
   Member* holder(std::uint8_t tool) noexcept;
   const std::vector<Member>& members() const noexcept { return members_; }
 
-  static constexpr Time kTimeout = std::chrono::milliseconds(800);
+  static constexpr Time kTimeout = std::chrono::milliseconds(800);  ///< without a ToolState (STATES.md)
 
  private:
   Outcome greet(const Datagram& datagram, const Hello& hello, const Endpoint& from, Time now,

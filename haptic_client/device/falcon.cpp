@@ -13,7 +13,7 @@ namespace {
 
 /// Waits until everything is through, half a second at most.
 void drain(UsbTransport& port) noexcept {
-  constexpr int kRounds = 250;
+  constexpr int kRounds = 250;  // of 2 ms: half a second
   const Time round = std::chrono::milliseconds(2);
   std::array<std::byte, 64> ignored;
   for (int i = 0; i < kRounds && port.state() == UsbTransport::State::kBusy; ++i) {
@@ -40,7 +40,7 @@ bool send_zero(UsbTransport& port) {
 }  // namespace
 
 std::vector<std::byte> read_firmware(const std::filesystem::path& file) {
-  constexpr std::size_t kLeast = 1024, kMost = 65536;
+  constexpr std::size_t kLeast = 1024, kMost = 65536;  // bytes: beyond, it is the wrong file
   std::ifstream in(file, std::ios::binary);
   if (!in || std::filesystem::is_directory(file))
     fail("{}: no such firmware image; Palpate ships none, it belongs to the maker of the device",
@@ -55,7 +55,7 @@ std::vector<std::byte> read_firmware(const std::filesystem::path& file) {
 }
 
 Silenced silence_falcons(UsbPorts ports, const std::function<void(UsbPorts&)>& add_new) {
-  constexpr int kTriesALook = 10;
+  constexpr int kTriesALook = 10;  // 10 ms apart: new ports are searched for ten times a second
   Silenced silenced;
   const Time end = now() + std::chrono::seconds(1);
   for (int i = 0; !ports.empty() || add_new; ++i) {
@@ -102,7 +102,7 @@ bool Falcon::stop() noexcept {
 
 /// A transfer failed under force, and the port is closed by now, or about to be: it is opened anew.
 bool Falcon::stop_after_fault() noexcept {
-  constexpr int kTimes = 5;
+  constexpr int kTimes = 5;  // 10 ms apart
   for (int i = 0; i < kTimes; ++i) {
     if (i > 0) sleep_until(now() + std::chrono::milliseconds(10));
     port_->close();

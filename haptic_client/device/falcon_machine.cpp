@@ -24,6 +24,8 @@ void ftdi(UsbTransport& port, FtdiRequest request, std::uint16_t value) {
   port.control({.type = kVendor, .request = request, .value = value});
 }
 
+// Until a packet is sent again; until a missing answer starts the upload again. The 62 bytes of a chunk take
+// 4.4 ms at 140 kBaud, and their echo as long.
 constexpr Time kProbePeriod = 20ms, kBootPeriod = 60ms, kHandshakePatience = 300ms, kEchoPatience = 500ms;
 constexpr Time kLongestSilence = 1s;                   // without a status packet: opens the device again
 constexpr Time kFresh = 50ms;                          // an older status gives no position

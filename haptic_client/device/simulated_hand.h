@@ -34,7 +34,7 @@ class SimulatedHand {
   /// True if substeps of that hand are stable, with a margin. Semi-implicit Euler of a spring k and a damper
   /// c on m is stable where h^2 k / m + 2 h c / m < 4.
   static bool is_stable(const OperatorSettings& hand) noexcept {
-    constexpr double kMost = 3;
+    constexpr double kMost = 3;  // of 4: the margin
     return kSubStep * (kSubStep * hand.hand_stiffness + 2 * (hand.hand_damping + hand.device_damping)) <
            kMost * hand.mass;
   }

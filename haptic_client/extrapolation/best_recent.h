@@ -23,7 +23,7 @@ class BestRecent : public Extrapolator {
     std::string_view name;
     std::unique_ptr<Extrapolator> law;
   };
-  static constexpr std::size_t kMost = 8;
+  static constexpr std::size_t kMost = 8;  ///< laws; `best_recent` has 7
 
   /// 1 to `kMost` laws, the most trusted last.
   explicit BestRecent(std::vector<Law> laws);

@@ -58,7 +58,7 @@ inline bool usable(const Sample& sample) noexcept {
 /// where the part of `f` along `rendered` is gone or turned about. What lies across `rendered`, as of
 /// friction, goes to nothing with that part, from a fifth of `rendered` on, so that no force ends at once.
 inline Vec3 without_pull(const Vec3& f, const Vec3& rendered) noexcept {
-  constexpr double kFraction = 0.2;
+  constexpr double kFraction = 0.2;  // of `rendered`
   const double size = rendered.norm();
   if (!(size > 0) || !(f.dot(rendered) > 0)) return Vec3::Zero();
   const double fraction = f.dot(rendered) / (kFraction * size * size);

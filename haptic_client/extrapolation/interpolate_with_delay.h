@@ -17,8 +17,8 @@ class InterpolateWithDelay : public Extrapolator {
   Vec3 force(const Vec3& p, Time t) noexcept override;
 
  private:
-  static constexpr std::size_t kDepth = 4;
-  std::array<Sample, kDepth> samples_{};  // newest first
+  static constexpr std::size_t kDepth = 4;  // reaches back 3 T, for 2 T and a latency up to T
+  std::array<Sample, kDepth> samples_{};    // newest first
   std::size_t count_ = 0;
 };
 

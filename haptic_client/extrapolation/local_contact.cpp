@@ -10,7 +10,7 @@ constexpr double kFirm = 0.7;  // of the largest force: a touch that tells of th
 constexpr double kFraction = 0.25, kMaxChange = 0.2;  // and how much of what it tells counts
 constexpr double kAlways = 0.1;                       // N: an error that is never too large
 
-constexpr std::uint64_t kNoSolve = ~std::uint64_t{0};
+constexpr std::uint64_t kNoSolve = ~std::uint64_t{0};  // no number of a solve
 
 bool believable(const Vec3& local, const Vec3& right) noexcept {
   return (local - right).norm() <= LocalContact::kBelievable * std::max(local.norm(), right.norm()) + kAlways;

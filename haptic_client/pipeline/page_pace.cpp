@@ -6,10 +6,13 @@
 namespace palpate::client {
 namespace {
 
-constexpr Time kPeriod = std::chrono::milliseconds(100), kWaits = std::chrono::milliseconds(30);
-constexpr Time kWindow = std::chrono::seconds(10);  // of the quickest
-constexpr Time kLeastPatience = std::chrono::milliseconds(200), kMostPatience = std::chrono::seconds(2);
-constexpr double kMostTokens = 8, kFaster = 1.5, kSlower = 0.5;
+constexpr Time kPeriod = std::chrono::milliseconds(100);  // between two changes of the rate
+constexpr Time kWaits = std::chrono::milliseconds(30);    // in a queue: longer is congestion
+constexpr Time kWindow = std::chrono::seconds(10);        // of the fastest page
+constexpr Time kLeastPatience = std::chrono::milliseconds(200),
+               kMostPatience = std::chrono::seconds(2);  // until lost
+constexpr double kFaster = 1.5, kSlower = 0.5;           // factors on the rate
+constexpr double kMostTokens = 8;                        // pages at once
 
 }  // namespace
 

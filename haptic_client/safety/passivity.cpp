@@ -15,8 +15,8 @@ constexpr double kFullDamping = 1.5;     // debts at which damping is at its bou
 constexpr double kSoften = 0.2;          // 1/s, by which the gain falls for each debt beyond the first
 constexpr double kFastest = 10;          // 1/s, at most
 constexpr double kRecover = 0.05;        // 1/s
-constexpr double kLeastGain = 1e-3;
-constexpr double kDampingRise = 0.1;  // s, from no damping to its bound: no sample makes a step of it
+constexpr double kLeastGain = 1e-3;      // of the force: 8 mN of 8 N
+constexpr double kDampingRise = 0.1;     // s, from no damping to its bound: no sample makes a step of it
 }  // namespace
 
 const Passivity::Tick* Passivity::tick_at(Time t) const noexcept {

@@ -18,7 +18,7 @@
 namespace palpate::client {
 namespace {
 
-constexpr double kTraceSeconds = 60;
+constexpr double kTraceSeconds = 60;  // a trace holds at most: its memory is reserved at the start
 constexpr int kMostStandstills = 30;  // looks of 100 ms
 
 /// Ticks a second: as asked for, or what the device serves if that is less.

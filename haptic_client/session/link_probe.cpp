@@ -10,8 +10,9 @@ namespace palpate::client {
 using protocol::Direction;
 
 namespace {
-constexpr Time kBetweenHellos = std::chrono::milliseconds(5), kInTransit = std::chrono::seconds(1);
-}
+constexpr Time kBetweenHellos = std::chrono::milliseconds(5);  // 200 a second, by which quantiles are known
+constexpr Time kInTransit = std::chrono::seconds(1);  // a Hello that is younger at the end is not lost
+}  // namespace
 
 LinkProbe::LinkProbe(const protocol::Endpoint& server, const protocol::Key& key)
     : server_(server),

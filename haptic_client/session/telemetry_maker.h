@@ -22,7 +22,7 @@ class TelemetryMaker {
                                   std::uint64_t missed) noexcept;
 
  private:
-  static constexpr double kMessagesHz = 30;
+  static constexpr double kMessagesHz = 30;  // protocol/README.md, "Telemetry"
   void start_at(std::int64_t t_ns) noexcept;
   void add(const Vec3& rendered_W, const Scoring& scoring) noexcept;
   void complete(const TickResult& result, const Pipeline& pipeline, const Scoring& scoring,

@@ -19,9 +19,9 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kLongSetUp = 1e4;    // ms: a scene whose variants are not built to compare
-constexpr double kMostVariant = 2e9;  // bytes of compliance that a variant is built with
-constexpr double kUsualFriction = 0.3;
+constexpr double kLongSetUp = 1e4;             // ms: a scene whose variants are not built to compare
+constexpr double kMostVariant = 2e9;           // bytes of compliance that a variant is built with
+constexpr double kUsualFriction = 0.3;         // as in block_friction.toml
 constexpr double kBytesOfMotion = 9 * 24 + 8;  // of a vertex in explicit steps: nine vectors, a mass
 /// What a variant is compared by. `setup_ms` is without reading the mesh, which all share.
 struct Cost {

@@ -12,7 +12,7 @@
 namespace palpate::sim {
 namespace {
 
-constexpr Time kFieldEach = std::chrono::milliseconds(100);
+constexpr Time kFieldEach = std::chrono::milliseconds(100);   // at most: it copies all nodes
 constexpr Time kPictureEach = std::chrono::milliseconds(15);  // at most
 
 /// HTTP is not encrypted: a token that is sent to another machine can be read on its way.

@@ -181,7 +181,7 @@ void require_output(const std::filesystem::path& file, const char* option, std::
 
 /// A motion of a countable number of steps, none of whose frames stands where the end is to be written.
 void require_motion(const SolveOptions& options) {
-  constexpr double kMostSteps = 1e7;
+  constexpr double kMostSteps = 1e7;  // of 1 ms: three hours
   const double steps = *options.seconds / options.step;
   if (steps > kMostSteps)
     fail("--step: {:g} s in steps of {:g} s are {:.2g} steps, more than {:g}; take longer ones",

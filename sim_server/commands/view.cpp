@@ -128,7 +128,7 @@ class Rerun {
 /// All of the capture, of about so many answers, into `session`; `rerun` may be null.
 void make_session(const std::filesystem::path& capture, std::size_t answers, Rerun* rerun,
                   RecordedSession& session) {
-  constexpr std::size_t kBetweenReports = 100;
+  constexpr std::size_t kBetweenReports = 100;  // answers: 3 s of a session at 30 Hz
   Time t{}, newest{};
   ProgressLine progress("nothing is shown");
   std::size_t taken = 0;

@@ -137,7 +137,7 @@ PALPATE_INLINE void rotations(const Mat3* F, Mat3* R) noexcept {
   }
 }
 
-constexpr std::size_t kBatch = 4;
+constexpr std::size_t kBatch = 4;  // doubles in a register of AVX2
 
 /// The same bits, whatever the processor.
 void rotate_batch(const Mat3* F, Mat3* R) noexcept {

@@ -6,7 +6,8 @@
 
 namespace palpate::sim {
 
-constexpr int kMostCorners = 10, kMostPoints = 4;
+constexpr int kMostCorners = 10,
+              kMostPoints = 4;  ///< of a quadratic tetrahedron: nodes, and quadrature points
 
 /// Elements whose forces or stiffness wait in the scratch to be added up in their order.
 constexpr std::size_t kElementsOfBatch = 2048;

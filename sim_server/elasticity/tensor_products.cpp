@@ -82,7 +82,7 @@ template <int kColumns>
                                            const int* __restrict neighbour, const double* __restrict vertex,
                                            const double* __restrict edge, const double* __restrict x,
                                            double* __restrict y) {
-  constexpr int kRow = 3 * kColumns;
+  constexpr int kRow = 3 * kColumns;  // numbers of a vertex
   for (int i = 0; i < n; ++i, vertex += 6) {
     const double* xi = x + std::ptrdiff_t{kRow} * i;
     double px[kColumns], py[kColumns], pz[kColumns];

@@ -172,8 +172,9 @@ void ExplicitMotion::advance(std::size_t begin, std::size_t end, double h,
   const double keep = 1 - h * damping_.mass, stiffness = damping_.stiffness;
   const double* __restrict masses = tensors_.masses().data(), * __restrict resistance = resistance_.data();
   double* __restrict u = state.u.data(), * __restrict v = state.v.data(), * __restrict bent = bent_.data();
-  constexpr std::size_t kNumbers = 3 * kColumns,
-                        kFar = kColumns == 1 ? ElasticTensors::kNumbersPerVertex : kNumbers;
+  constexpr std::size_t kNumbers = 3 * kColumns;  // of a vertex
+  // From a vertex to the next in `bent_` and `resistance_`, which are padded where there is one motion.
+  constexpr std::size_t kFar = kColumns == 1 ? ElasticTensors::kNumbersPerVertex : kNumbers;
   for (std::size_t vertex = begin; vertex < end; ++vertex) {
     const double add_impulse = h / masses[vertex];
     for (std::size_t i = 0; i < kNumbers; ++i) {

@@ -162,7 +162,7 @@ class Cursor {
   }
 
   std::string found() const {
-    constexpr std::size_t kShown = 24;
+    constexpr std::size_t kShown = 24;  // characters of a word: the message stays one line
     std::string word;
     for (std::size_t i = token_; i < bytes_.size() && !is_space(bytes_[i]) && word.size() < kShown; ++i) {
       word += bytes_[i] >= ' ' && bytes_[i] <= '~' ? bytes_[i] : '?';

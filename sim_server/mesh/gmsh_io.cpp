@@ -294,7 +294,7 @@ class MeshReader {
   /// Each physical group of an entity keeps all triangles of that: a short list of both must not ask for more
   /// memory than reading the file does.
   void require_room_for(std::size_t groups, std::size_t triangles) {
-    constexpr std::size_t kFewest = 100'000;
+    constexpr std::size_t kFewest = 100'000;  // triangles that any file may keep, 1.2 MB
     tagged_ += groups * triangles;
     if (tagged_ > std::max(kFewest, cursor_.bytes_in_all()))
       cursor_.wrong("a surface of {} triangles in {} physical groups, which keep them all; take fewer groups",

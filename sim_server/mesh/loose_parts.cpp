@@ -61,7 +61,8 @@ struct Joint {
 
 /// All of them, in order. Where many parts meet in a vertex, only those of neighbouring numbers.
 std::vector<Joint> joints_of(const TetMesh& mesh, const std::vector<int>& part) {
-  constexpr std::ptrdiff_t kMany = 16;
+  constexpr std::ptrdiff_t kMany =
+      16;  // parts: up to 120 pairs at a vertex, beyond which work would be quadratic
   std::vector<std::pair<int, int>> uses;  // vertex, part
   for (std::size_t t = 0; t < part.size(); ++t) {
     for (const int v : mesh.tetrahedra[t]) uses.emplace_back(v, part[t]);

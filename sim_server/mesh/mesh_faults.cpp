@@ -160,7 +160,7 @@ void find_unsound(const TetMesh& mesh, Finds& finds, TetMesh& upright) {
 }
 
 void find_bodies(const TetMesh& mesh, Finds& finds) {
-  constexpr std::size_t kShown = 20;
+  constexpr std::size_t kShown = 20;  // bodies: the message stays one line
   const std::vector<int> sizes = body_sizes(mesh);
   if (sizes.size() == 1) return;
   const std::vector<int> shown(sizes.begin(), sizes.begin() + std::min(kShown, sizes.size()));
@@ -175,7 +175,7 @@ void find_bodies(const TetMesh& mesh, Finds& finds) {
 
 /// The part with fewer tetrahedra is the one that hangs on the other.
 std::string text_of(const TetMesh& mesh, const Hinge& hinge) {
-  constexpr std::size_t kShown = 6;
+  constexpr std::size_t kShown = 6;  // vertices: the message stays one line
   const auto& on = hinge.vertices;
   const std::vector<int> shown(on.begin(), on.begin() + std::min(kShown, on.size()));
   const auto [fewer, more] = std::minmax(hinge.tetrahedra[0], hinge.tetrahedra[1]);

@@ -106,7 +106,7 @@ OuterFaces outer_faces(const TetMesh& mesh) {
 }
 
 std::string describe(const OverlappingFace& face) {
-  constexpr std::size_t kShown = 6;
+  constexpr std::size_t kShown = 6;  // tetrahedra: the message stays one line
   const auto shown = std::span(face.tetrahedra).first(std::min(kShown, face.tetrahedra.size()));
   return fmt::format(
       "the face of vertices {} belongs to {} tetrahedra ({}{}), but a solid has one on each side of a face",

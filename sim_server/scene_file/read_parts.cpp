@@ -23,6 +23,7 @@ constexpr std::array kLaws{
     Named{"neo_hookean", ElasticLaw::kNeoHookean},
     Named{"stvk", ElasticLaw::kStVenantKirchhoff},
 };
+// Key `element` of [material].
 constexpr std::array kElements{
     Named{"p1", ElementKind::kLinear},
     Named{"p1_nodal_pressure", ElementKind::kNodalPressure},

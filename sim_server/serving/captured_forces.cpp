@@ -13,8 +13,8 @@ using namespace protocol;
 
 namespace {
 
-constexpr std::size_t kMostSessions = 1000;
-constexpr double kFastest = 1e6;  // Hz: what a Welcome may say
+constexpr std::size_t kMostSessions = 1000;  // of a capture: noise must not fill the memory
+constexpr double kFastest = 1e6;             // Hz: what a Welcome may say
 
 struct Session {
   std::map<std::uint64_t, ForceSample> samples;  // by number; what the capture holds twice counts once

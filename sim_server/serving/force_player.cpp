@@ -6,7 +6,7 @@ namespace palpate::sim {
 using protocol::ForceSample;
 
 namespace {
-constexpr Time kPollPeriod = std::chrono::milliseconds(1);
+constexpr Time kPollPeriod = std::chrono::milliseconds(1);  // the most that it adds to a latency
 }
 
 void ForcePlayer::run(const std::stop_token& stop) noexcept {

@@ -30,7 +30,7 @@ class ToolPath {
   std::optional<Point> at(std::int64_t t_ns) const noexcept;
 
  private:
-  static constexpr std::size_t kPoints = 64;
+  static constexpr std::size_t kPoints = 64;  // 63 intervals of 2 ms are 126 ms: four steps at 30 Hz
   static constexpr std::uint64_t kSpacing = 2'000'000;  // ns
 
   const Point& back(std::size_t i) const noexcept { return ring_[(written_ - 1 - i) % kPoints]; }

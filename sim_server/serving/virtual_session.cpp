@@ -19,7 +19,7 @@ Endpoint documentation_address(std::uint8_t last, std::uint16_t port) {
 }
 /// Captures of different motions or links are different sessions.
 std::uint64_t session_number(const Trajectory& motion, const VirtualLink& link) {
-  constexpr int kPlaces = 64;
+  constexpr int kPlaces = 64;  // that tell one motion from another
   Fnv1a hash;
   hash.add(&link.rate_hz, sizeof link.rate_hz);
   hash.add(&link.ticks_hz, sizeof link.ticks_hz);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kPage = 4096;  // of the header: the matrix begins where a page does
 constexpr std::array<char, 16> kMagic{"palpate set-up\n"};
-constexpr std::uint64_t kVersion = 2;
+constexpr std::uint64_t kVersion = 2;                           // of the layout of a file
 constexpr std::uint64_t kMostNumbers = std::uint64_t{1} << 48;  // of a matrix: its bytes can be counted
 constexpr std::string_view kEnding = ".setup", kPartEnding = ".part";
 constexpr std::size_t kRandom = std::string_view(".XXXXXX").size();

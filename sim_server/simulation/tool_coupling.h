@@ -38,7 +38,7 @@ class ToolCoupling {
   }
 
  private:
-  static constexpr int kMost = 3 * static_cast<int>(kMaxTools);
+  static constexpr int kMost = 3 * static_cast<int>(kMaxTools);  // axes of all tools
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMost, kMost>;
 
   void find_compliance(Tissue& tissue, std::span<const ToolContact> tools);

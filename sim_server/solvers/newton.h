@@ -26,7 +26,7 @@ struct TrialStep {
 };
 
 /// Backtracking line search along the search direction `d` (m, by unknowns) from where the residual is
-/// `force` (N): the first s of 1, 1/2, 1/4 ... above 1e-4 at which
+/// `force` (N): the first s of 1, 1/2, 1/4 ... above `kShortestTrialStep` at which
 ///   d . r(x + s d) >= -|d . r(x)|,
 /// so that the forces there do not pull back harder than those here push on. Forces that grow faster than
 /// their linearisation would otherwise throw a body farther each time. Matthies and Strang (1979, Int. J.

@@ -12,6 +12,7 @@ namespace {
 struct Allowance {
   double columns, zeros;
 };
+// As above; the last one for all larger supernodes.
 constexpr std::array kAllowances{Allowance{8, 1}, Allowance{32, 0.8}, Allowance{96, 0.2},
                                  Allowance{1e9, 0.1}};
 

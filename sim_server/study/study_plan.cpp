@@ -18,17 +18,17 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kMostTetrahedra = 22e3;  // of a timed mesh
-// Of references: nodes, of those in motion (one factor serves the linear law) and at rest; where edges under
-// the tool are short enough, of its radius (with friction each touching node costs far more); how much
-// shorter each try; and how fast edges grow away from there.
+// Of references: nodes, of those in motion (one factor serves the linear law) and at rest.
 constexpr double kMostNodes = 14.5e3, kMostNodesLinear = 26e3, kMostNodesQuick = 4e3, kMostNodesAtRest = 36e3,
                  kMostNodesAtRestQuick = 25e3;
+// Of references: the shortest edge under the tool, of its radius (with friction each touching node costs far
+// more); how much shorter each try is; and how fast edges grow away from there.
 constexpr double kShortEdge = 0.2, kShortEdgeRubbed = 0.6, kShorter = 0.7, kGrowth = 0.7;
 constexpr int kReferenceSteps = 4;                      // to one of the scene
 constexpr double kUsualRate = 30;                       // Hz, where the scene names none
 constexpr std::array kSteps{0.25, 0.5, 1.0, 2.0, 4.0};  // of the scene's, s
 constexpr std::array kStepsOfElements{0.5, 2.0};  // of the scene's: where a better element comes too late
-constexpr std::array kTolerances{1e-1, 1e-2, 1e-3, 1e-5, 1e-8};
+constexpr std::array kTolerances{1e-1, 1e-2, 1e-3, 1e-5, 1e-8};  // key `tolerance`
 constexpr std::array kElements{ElementKind::kLinear, ElementKind::kNodalPressure, ElementKind::kQuadratic};
 
 bool takes(const DeformationModelRow& row, ElementKind element) {

@@ -18,7 +18,7 @@ constexpr double kDepth = 0.5, kSlide = 1.0;  // of the tool's radius
 constexpr double kClear = 0.3;                // of the tool's radius: above the surface, at both ends
 constexpr double kPress = 0.5, kCompleteSurface = 2.0;  // s
 constexpr double kRows = 1000;                          // of the motion, Hz
-constexpr std::size_t kMostSites = 1500;
+constexpr std::size_t kMostSites = 1500;                // compared at each millisecond of the motion
 
 double eased(double fraction) {
   return 0.5 - 0.5 * std::cos(std::numbers::pi * std::clamp(fraction, 0.0, 1.0));

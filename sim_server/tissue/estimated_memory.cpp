@@ -5,8 +5,8 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kReal = sizeof(double), kInt = sizeof(int), kVec = 3 * kReal;
-constexpr double kEntry = kReal + kInt;  // of a sparse matrix
+constexpr double kReal = sizeof(double), kInt = sizeof(int), kVec = 3 * kReal;  // bytes
+constexpr double kEntry = kReal + kInt;                                         // of a sparse matrix
 constexpr double kTwoRing = 4.9;  // pairs of vertices at most two edges apart, per edge: measured 4.1 to 4.8
 
 /// Pairs of different nodes whose forces depend on each other.

@@ -89,7 +89,7 @@ void write_surface(const SurfaceStamp& stamp, std::span<const std::uint16_t> now
   const std::size_t n = now.size() / 3;
   std::size_t moved = 0;
   for (std::size_t v = 0; v < n; ++v) moved += same(now, had, v) ? 0 : 1;
-  constexpr std::size_t kNumbered = sizeof(std::uint32_t) + 3 * sizeof(std::uint16_t);
+  constexpr std::size_t kNumbered = sizeof(std::uint32_t) + 3 * sizeof(std::uint16_t);  // a vertex alone
   complete = complete || kNumbered * moved >= now.size_bytes();
   begin(out, Kind::kSurface);
   append(out, stamp.version), append(out, stamp.step), append(out, stamp.t);
@@ -141,7 +141,7 @@ void write_ticks(const ClientTicks& ticks, Bytes& out) {
 }
 
 void write_field(std::uint32_t version, std::span<const float> values, Bytes& out) {
-  constexpr std::uint8_t kStrainEnergy = 1;
+  constexpr std::uint8_t kStrainEnergy = 1;  // the only field so far
   float largest = 0;
   for (const float value : values) largest = std::max(largest, value);
   begin(out, Kind::kField, kStrainEnergy);

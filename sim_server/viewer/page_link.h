@@ -24,10 +24,10 @@ struct Showing {
   std::vector<SeenPeer> peers;           ///< of each tool
   MeasuredRates rates;
   bool paused = false;
-  std::vector<SeenClient> clients;           ///< of each tool; `laws` 0: none
-  std::vector<std::uint64_t> client_events;  ///< of each tool: how many came so far
-  std::vector<ClientTicks> ticks;            ///< the newest, in a ring of
-  static constexpr std::size_t kTicksStored = 16;
+  std::vector<SeenClient> clients;                 ///< of each tool; `laws` 0: none
+  std::vector<std::uint64_t> client_events;        ///< of each tool: how many came so far
+  std::vector<ClientTicks> ticks;                  ///< the newest, in a ring of
+  static constexpr std::size_t kTicksStored = 16;  ///< half a second of one client at 30 messages a second
   std::uint64_t ticks_so_far = 0;
   std::vector<float> field;  ///< (n), J/m3; empty: not known
   std::uint64_t fields = 0;  ///< so far
@@ -67,8 +67,8 @@ class PageLink {
   /// The next message into `out`, and what it is; nothing where it has all there is.
   std::optional<Kind> next(const Showing& showing, Time now, Bytes& out);
 
-  static constexpr double kMessagesPerSecond = 200;
-  static constexpr Time kHelloWithin = std::chrono::seconds(5);
+  static constexpr double kMessagesPerSecond = 200;  ///< from a page; one of 60 frames a second sends 120
+  static constexpr Time kHelloWithin = std::chrono::seconds(5);       ///< of opening
   static constexpr Time kStateEach = std::chrono::milliseconds(150);  ///< at least
   static constexpr std::size_t kMaxInTransit = 4;  ///< surfaces, of a page that reports what it drew
   static constexpr Time kSurfaceEach = std::chrono::milliseconds(15);  ///< at most

@@ -38,7 +38,7 @@ struct SceneFacts {
 
 /// State of one tool after a step. World frame, m, N.
 struct SeenTool {
-  static constexpr std::size_t kMostLoads = 64;
+  static constexpr std::size_t kMostLoads = 64;  ///< arrows; a contact of `liver_friction.toml` has some 20
   bool held = false, contact = false, flagged = false;
   ToolPose pose;
   Vec3 f_W = Vec3::Zero();

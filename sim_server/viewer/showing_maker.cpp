@@ -3,8 +3,9 @@
 namespace palpate::sim {
 namespace {
 
-constexpr Time kMeasuredOver = std::chrono::seconds(1), kMarkEach = std::chrono::milliseconds(40);
-constexpr double kMeasuredAtLeast = 0.4;  // s
+constexpr Time kMeasuredOver = std::chrono::seconds(1);    // rates of steps
+constexpr Time kMarkEach = std::chrono::milliseconds(40);  // 26 marks in that second
+constexpr double kMeasuredAtLeast = 0.4;                   // s
 
 }  // namespace
 
