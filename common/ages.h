@@ -3,9 +3,9 @@
 
 namespace palpate {
 
-/// A link is silent, and a force too old to be felt, when the newest sample is older than this. One number
-/// for the session (which asks the server again), the laws (which look back at nothing from before it) and
-/// the watchdog (which fades the force).
+/// A link is silent, and a force too old to be rendered, when the newest sample is older than this. One
+/// number for the session (which asks the server again), the laws (which look back at nothing from before it)
+/// and the watchdog (which fades the force).
 constexpr Time kOutage = std::chrono::milliseconds(300);
 
 /// The longest time that one haptic tick may count for, s: a loop that stalled does not come back with a

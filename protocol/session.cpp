@@ -190,7 +190,7 @@ ServerSessions::Outcome ServerSessions::admit(const Hello& hello, const Key& sha
                               radii_[member->tool]}}}};
 }
 
-/// Without a key a client is told that its session is unknown here, with less than what it sent.
+/// Without a key the answer is that the session is unknown here, with fewer bytes than the client sent.
 ServerSessions::Outcome ServerSessions::unknown(const Datagram& datagram, LinkStats& stats) const {
   stats.reject(Verdict::kSession);
   if (!keys_.empty() || !std::holds_alternative<ToolState>(datagram.message)) return {};

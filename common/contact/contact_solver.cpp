@@ -373,7 +373,8 @@ void ContactSolver::collect_result(int nodes, const ContactForce& outcome,
       const double size = lambda_[rows * k + row];
       const Vec3 d = direction(k, row);
       result.force += size * c.at_tip(d);
-      // The tip's normals pass through its centre; and what a pivot carries is not felt.
+      // The tip's normals pass through its centre; and the device does not render the part that a pivot
+      // carries.
       if ((row > 0 || c.part != Contact::kTip) && !path_.tools[c.tool].pivots)
         result.torque += c.arm.cross(size * d);
       for (int i = 0; i < c.size; ++i) node_force_.segment<3>(3 * c.node[i]) -= size * c.weight[i] * d;

@@ -16,7 +16,7 @@ constexpr std::size_t kMaxTools = 8;
 ///   wall
 ///            and which does not move. The device moves the tip by its three axes: two rotations about the
 ///            pivot, and insertion. The tip is ahead of the pivot by more than its radius, or it touches
-///            nothing. What touches the shaft at x with force f is felt at the tip as the force F that does
+///            nothing. What touches the shaft at x with force f acts at the tip as the force F that does
 ///            the same work, F . dp = f . dx: with a the axis, F = a (a . f) + s (f - a (a . f)), s = |x -
 ///            pivot| / |p - pivot| along the axis (a small roll about the axis does no work here, and the
 ///            wall carries the rest).

@@ -15,7 +15,7 @@ std::optional<double> stable_to(std::string_view law, double age_ms);
 struct TestedLink {
   std::string law;
   double age_p99_ms = 0;               ///< of the samples, as they came
-  double stiffest_n_m = 0;             ///< that the session felt; 0: nothing was touched
+  double stiffest_n_m = 0;             ///< that the session rendered; 0: nothing was touched
   double samples_hz = 0, rate_hz = 0;  ///< that came; that the server aims for, 0: as fast as it can
   double loss_percent = 0;             ///< of samples
   bool connected = false;

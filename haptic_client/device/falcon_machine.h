@@ -73,7 +73,7 @@ class FalconMachine {
     Time entered{}, sent{}, heard{}, moved{}, ran{}, retry_at{}, lost{};
   } times_;
   bool known_ = false;    // it was there once
-  bool failing_ = false;  // it refused its firmware, and was told so
+  bool failing_ = false;  // it refused its firmware, and a line said so
   bool pushes_ = false;   // a torque that a hand feels
   bool may_push_ = false,
        zero_in_transit_ = false;  // the newest command, of no torque, may still be on the way

@@ -32,7 +32,7 @@ DeviceReading SpaceMouse::read(Time now) noexcept {
   return {.t = now, .p_D = p_D_, .buttons = state_.buttons, .valid = there};
 }
 
-/// What was told last held until now, but not longer than the silence that counts as standing still.
+/// The last report held until now, but not longer than the silence that counts as standing still.
 void SpaceMouse::advance(Time now) noexcept {
   const Time end = std::min(now, heard_ + kIdle);
   if (end > last_) {

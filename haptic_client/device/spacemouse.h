@@ -14,8 +14,8 @@ struct SpaceMouseSettings {
 };
 
 /// A 3Dconnexion 6-DoF mouse: its deflection is the velocity of a tool that starts at 0 (x right, y up, z
-/// towards the user, m). It has no motors: the force is told, not felt. The tool stands still when no
-/// translation was told for 100 ms, and while the mouse is unplugged; then it goes on from where it was.
+/// towards the user, m). It has no motors: the force is reported, not rendered. The tool stands still when no
+/// translation came for 100 ms, and while the mouse is unplugged; then it goes on from where it was.
 class SpaceMouse : public Device {
  public:
   SpaceMouse(std::unique_ptr<UsbTransport> port, const SpaceMouseSettings& settings);
@@ -35,7 +35,7 @@ class SpaceMouse : public Device {
   std::atomic<const char*> message_{"looking for a SpaceMouse"};
   SpaceMouseState state_;
   Vec3 p_D_ = Vec3::Zero();
-  Time last_{}, heard_{}, retry_at_{};  // tick before; translation told last; not opened before
+  Time last_{}, heard_{}, retry_at_{};  // tick before; last translation; not opened before
 };
 
 }  // namespace palpate::client

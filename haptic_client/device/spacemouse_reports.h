@@ -29,7 +29,7 @@ struct SpaceMouseState {
 double spacemouse_response(int raw) noexcept;
 
 /// Takes one report: translation (7 bytes, or 13 with the rotation, which is not used) or buttons. Others and
-/// truncated ones change nothing. True: it told the translation.
+/// truncated ones change nothing. True: it had the translation.
 bool take_spacemouse_report(std::span<const std::byte> report, SpaceMouseState& state) noexcept;
 
 /// The output report that switches the light on or off.

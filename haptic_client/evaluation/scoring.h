@@ -21,7 +21,7 @@ struct ErrorSums {
   ErrorSums& operator+=(const ErrorSums& other) noexcept;
 };
 
-/// Runs laws in the shadow of the one that is felt, on the same samples and motion, and scores each when the
+/// Runs laws beside the rendered one, on the same samples and motion, and scores each when the
 /// next sample arrives: the reference is the force on the path really taken between two samples
 /// (`BetweenSamples`), compared with what the law gave at each tick t_n <= t < t_(n+1), with the samples it
 /// had then. So the latency of the link counts, as it does for the hand. The `paper_` errors have the

@@ -6,7 +6,7 @@
 namespace palpate::client {
 namespace {
 constexpr double kSamples = 32;  // that the mean error is of
-constexpr double kBetter = 0.8;  // of the error of the law that is felt
+constexpr double kBetter = 0.8;  // of the error of the rendered law
 constexpr double kLead = 1.03;   // of the largest force lately: what a law may foresee where the tool cuts
 }  // namespace
 

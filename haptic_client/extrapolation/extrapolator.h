@@ -26,7 +26,7 @@ struct Surface {
   double tool_compliance = 0;  ///< m/N
   /// State of the slow modes of a body in motion; the surface model then covers the remaining compliance.
   struct Modes {
-    int count = 0;                                   ///< 0: it does not swing, or nobody told
+    int count = 0;                                   ///< 0: it does not swing, or none are published
     std::array<float, kMaxPublishedModes> q{}, v{};  ///< m sqrt(kg), m sqrt(kg)/s
   } modes = {};
   protocol::RelaxedState relaxed = {};    ///< some of what it remembers besides; without terms: nothing

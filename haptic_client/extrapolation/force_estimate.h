@@ -6,7 +6,7 @@
 
 namespace palpate::client {
 
-/// An extrapolation law with what stands around every law alike, so that the law that is felt and those that
+/// An extrapolation law with what stands around every law alike, so that the rendered law and those that
 /// only run beside it are treated the same: it sees each sample once and in order; when no sample has come
 /// for three periods longer than usual, time turns for it and runs back to that of the newest one, as fast as
 /// it ran on, and stands still there; it starts afresh after an outage; and where the newest sample saw the

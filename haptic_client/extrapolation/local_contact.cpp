@@ -65,7 +65,7 @@ void LocalContact::store(Time t, const Vec3& p_rest, const Vec3& local) noexcept
   if (Rendered* const rendered = rendered_.add(t)) *rendered = {p_rest, local, contact_.tangent()};
 }
 
-/// What was felt at the tick of time `t`, or the one before it; at `p_rest`, which is where the tool is
+/// The force rendered at the tick of time `t`, or the one before it; at `p_rest`, which is where the tool is
 /// thought to have been by now.
 std::optional<Vec3> LocalContact::stored(Time t, const Vec3& p_rest) const noexcept {
   const Rendered* const rendered = rendered_.at(t);

@@ -20,12 +20,12 @@ namespace palpate::client {
 /// presses firmly alone, and r is 0: what a light touch lacks is the inertia of all that is quicker, and soon
 /// gone. Where the model is not known around the tool (yet), a sample brings none, or F_loc(P_n') is not even
 /// half right: `TwoTangents`, from one sample to the next. With friction, where force depends on the path,
-/// F_loc(P_n') is the one that was felt at t_n: the contact here has followed the path tick by tick, so there
-/// is no state of the server's to take over, and nothing to replay; it is not felt before it was compared.
-/// Contact solved at the haptic rate on a compliance from the simulation: Peterlik et al. (2011); the rest is
-/// of our own. About 50 ns a tick, and where the tool has gone on (see `ContactOnPatch`) a contact solve of
-/// 10 us, one in ten above 50 us; with friction 30 us, one in ten above 130 us. A sample: 1 us, of a free
-/// tool expected to touch 140 us.
+/// F_loc(P_n') is the one that was rendered at t_n: the contact here has followed the path tick by tick, so
+/// there is no state of the server's to take over, and nothing to replay; it is not rendered before it was
+/// compared. Contact solved at the haptic rate on a compliance from the simulation: Peterlik et al. (2011);
+/// the rest is of our own. About 50 ns a tick, and where the tool has gone on (see `ContactOnPatch`) a
+/// contact solve of 10 us, one in ten above 50 us; with friction 30 us, one in ten above 130 us. A sample: 1
+/// us, of a free tool expected to touch 140 us.
 class LocalContact : public Extrapolator {
  public:
   static constexpr double kMostCorrection = 3;   ///< factor on the stiffness of the local model, either way
@@ -59,7 +59,7 @@ class LocalContact : public Extrapolator {
   std::optional<Vec3> follow(const Vec3& p, Time t) noexcept;
   Vec3 moved_by_others(const Vec3& rendered) const noexcept;
 
-  /// F_loc as it was felt.
+  /// F_loc as it was rendered.
   struct Rendered {
     Vec3 p_rest, force;  // m, where the slow modes stand at 0; N
     Mat3 tangent;        // N/m
@@ -72,14 +72,15 @@ class LocalContact : public Extrapolator {
   ModalMemory memory_;
   Vec3 swing_ = Vec3::Zero();          // how far the slow modes have moved the surface here, m
   std::uint64_t bearing_ = 0;          // the contact solve that `memory_` stands on
-  Time now_{};                         // of the tick: the force felt then is remembered
+  Time now_{};                         // of the tick: its rendered force is stored
   double local_size_ = 0;              // |F_loc(P_n')|, N
   double kappa_ = 1, largest_ = 0;     // -, N: of all samples
   Vec3 remainder_ = Vec3::Zero();      // r, N
   Vec3 rendered_last_ = Vec3::Zero();  // N, at the last tick that it solved
   TickMemory<Rendered> rendered_;
-  bool known_ = false;      // whether the model says what is felt, since the newest sample
-  bool following_ = false;  // or follows the path unfelt, as with friction nothing can be compared yet
+  bool known_ = false;  // whether the model gives the rendered force, since the newest sample
+  bool following_ =
+      false;  // or follows the path without being rendered, as with friction nothing can be compared yet
 };
 
 }  // namespace palpate::client

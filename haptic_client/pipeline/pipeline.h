@@ -26,7 +26,7 @@ struct TickResult {
   bool used = false;         ///< `sample` arrived, was newer, and is the newest now
   Sample sample{};
   Time step{};                                      ///< that the server spent on it
-  std::optional<DiscretisationErrors> errors = {};  ///< of its force, where the server told them
+  std::optional<DiscretisationErrors> errors = {};  ///< of its force, where the server published them
 };
 
 /// Sums over a session, for the report.

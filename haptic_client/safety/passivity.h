@@ -42,8 +42,8 @@ class Passivity {
   };
   explicit Passivity(const Settings& settings) : settings_(settings) {}
 
-  /// The handle came to where it is at `t` by `d_D` (m) within `dt` (s), under what `wrote` told; the surface
-  /// goes by itself at `surface_v_D` (m/s). Once a tick, first.
+  /// The handle came to where it is at `t` by `d_D` (m) within `dt` (s), under the forces given to `wrote`;
+  /// the surface goes by itself at `surface_v_D` (m/s). Once a tick, first.
   void moved(Time t, const Vec3& d_D, const Vec3& surface_v_D, double dt) noexcept;
   /// A sample arrived: at time `t` of a tick the tool was at `p_D` (m) and the tissue's force was `f_D` (N),
   /// `max_force` (N) of it at most to be felt. In the order of time.

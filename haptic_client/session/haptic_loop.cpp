@@ -56,7 +56,7 @@ TickResult HapticLoop::tick() noexcept {
   return result;
 }
 
-/// What a page is told is old by then if the network thread has no room for it.
+/// A message to a page is out of date by then, if the network thread has no room for it.
 void HapticLoop::publish_page(const TickResult& result) noexcept {
   const protocol::Telemetry* published =
       telemetry_.tick(result, pipeline_, observation_.scoring(), stats_.missed);

@@ -24,7 +24,7 @@ std::uint32_t in_32_bits(T value) noexcept {
   return static_cast<std::uint32_t>(std::clamp<T>(value, 0, std::numeric_limits<std::uint32_t>::max()));
 }
 
-/// What the page is told is for the eye: a wild force that the limiter held back must still travel.
+/// The page shows these numbers: a wild force that the limiter held back must still travel.
 float newton(const Vec3& f) noexcept {
   return static_cast<float>(std::min(f.stableNorm(), 1e6));
 }

@@ -29,8 +29,8 @@ class TelemetryMaker {
                 std::uint64_t missed) noexcept;
 
   std::string law_;
-  std::uint64_t every_;  // ticks between two that are told
-  std::size_t ticks_;    // told in a message
+  std::uint64_t every_;  // ticks between two that are sent
+  std::size_t ticks_;    // in a message
   bool wanted_ = false, began_ = false;
   std::int64_t last_ns_ = 0, start_ns_ = 0, longest_ns_ = 0, oldest_ns_ = 0;
   std::uint64_t seen_ = 0;  // ticks since the message before

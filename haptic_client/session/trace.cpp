@@ -53,7 +53,7 @@ void TraceWriter::add_error(const DiscretisationError& error) {
   if (error.known()) fmt::format_to(std::back_inserter(text_), "{}", error.percent);
 }
 
-/// The force that was right, and how far the felt law was off; empty where nobody could know.
+/// The reference force, and the error of the rendered law; empty where nobody could know.
 void TraceWriter::add_extrapolation(const TickRecord& tick) {
   const auto out = std::back_inserter(text_);
   text_ += ',';

@@ -4,7 +4,7 @@
 
 namespace palpate::client {
 
-/// `rendered.mesh_percent`, `.motion_percent`, `.extrapolation_percent` and `.how` of a tool that felt
+/// `rendered.mesh_percent`, `.motion_percent`, `.extrapolation_percent` and `.how` of a tool that rendered
 /// `method`; null where nobody knows. Of extrapolation, what the row of `method` scored.
 Json error_budget_report(const std::string& method, const Observation& observation);
 

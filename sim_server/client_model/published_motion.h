@@ -33,7 +33,7 @@ class PublishedMotion {
   /// and forces f (N) held until then. O(unknowns x modes).
   void begin(std::span<const double> u, std::span<const double> v, std::span<const double> f,
              double late) noexcept;
-  /// Amplitudes of the told modes alone, of displacements u (m).
+  /// Amplitudes of the published modes alone, of displacements u (m).
   const Eigen::VectorXd& amplitudes(std::span<const double> u) noexcept;
   /// Advances that state by `time` (s) under constant loads, and writes amplitudes and rates.
   void advance(double time, std::span<const VertexLoad> loads, Eigen::Ref<Eigen::VectorXd> q,
@@ -68,11 +68,11 @@ class PublishedMotion {
  private:
   PublishedModes modes_;
   SurfaceCompliance residual_;
-  Eigen::MatrixXd shapes_;         // (unknowns of the model x told modes), 1/sqrt(kg)
+  Eigen::MatrixXd shapes_;         // (unknowns of the model x published modes), 1/sqrt(kg)
   Eigen::VectorXd masses_;         // (unknowns) kg
   Eigen::VectorXd weighted_;       // (unknowns) of the vector that is projected
-  Eigen::VectorXd q_, v_, force_;  // (told modes)
-  std::vector<ModeStep> steps_;    // (told modes) over `stepped_`
+  Eigen::VectorXd q_, v_, force_;  // (published modes)
+  std::vector<ModeStep> steps_;    // (published modes) over `stepped_`
   double stepped_ = -1;            // s
 };
 

@@ -14,7 +14,7 @@ class PublishedRelaxation {
   /// Nothing has been pressed yet. A surface vertex that moves in no mode is held, and does not creep.
   explicit PublishedRelaxation(const PublishedModes& modes);
 
-  /// A step of `h` (s > 0) has ended with the told modes at `q`, under these loads.
+  /// A step of `h` (s > 0) has ended with the published modes at `q`, under these loads.
   void advance(double h, const Eigen::VectorXd& q, std::span<const VertexLoad> loads) noexcept;
   /// Writes the memory at the end of the step in hand, if that ends so.
   void predict_tangent(double h, const Eigen::VectorXd& q, std::span<const VertexLoad> loads,
@@ -23,8 +23,8 @@ class PublishedRelaxation {
 
  private:
   struct Memory {
-    Eigen::VectorXd q;      // (told modes)
-    Eigen::MatrixXd z;      // (told modes x terms)
+    Eigen::VectorXd q;      // (published modes)
+    Eigen::MatrixXd z;      // (published modes x terms)
     std::vector<Vec3> f;    // (surface vertices) N
     std::vector<Vec3> psi;  // (surface vertices x terms) N
   };

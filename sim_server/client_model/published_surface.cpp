@@ -16,7 +16,7 @@ constexpr double kCalm = 0.1;  // s without a cut before it is worth beginning
 // Time that the background may take, s: some 1.5 times what one core of a Zen 3 needs.
 constexpr double kLeast = 0.1, kBodyOfTetrahedron = 5e-5, kSurfaceOfTetrahedron = 1.1e-5;
 // Of the radius of a ball around a tool: so far from its middle the next one is begun; and so far from it a
-// tool may be expected before another shape is told.
+// tool may be expected before another shape is published.
 constexpr double kAmple = 0.2, kStays = 0.6;
 // Of the time from begin to use: a tool that goes on is in the middle of the next ball half of it later.
 constexpr double kLead = 1.5;
@@ -233,7 +233,7 @@ void SurfacePublisher::start_body(const Tissue& tissue) {
   });
 }
 
-/// Where it will have gone halfway through the use of what is begun now, within what is told now.
+/// Where it will have gone halfway through the use of what is begun now, within the surface published now.
 Vec3 SurfacePublisher::expected_place(const Tool& tool) const {
   if (!now_.surface) return tool.p_W;
   const Vec3 path = kLead * surface_steps_ * period_ * tool.v_W;

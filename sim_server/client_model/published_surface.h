@@ -27,7 +27,7 @@ struct PublishedSurface {
   };
 
   PublishedMotion motion;
-  Part shape;           ///< whose shape and modes are told
+  Part shape;           ///< whose shape and modes are published
   Part compliant;       ///< of which `motion` knows how compliant they are, too
   std::uint32_t model;  ///< another number for another `shape`, or where tissue was cut in between
 
@@ -44,8 +44,8 @@ int published_bodies(const Scene& scene);
 /// modes of what is left, once it was left alone for a tenth of a second; then the compliance, and that anew
 /// as the tool goes on. What it made is in use from a step on that was fixed when it began, at any speed of
 /// the machine: a step that `waits` waits for it then; else in the first that finds it made. A cut ends what
-/// is told at once. So the same tools make the same bits, unless memory ends. Owned by the thread that steps.
-/// Destroying it waits for the background.
+/// is published at once. So the same tools make the same bits, unless memory ends. Owned by the thread that
+/// steps. Destroying it waits for the background.
 class SurfacePublisher {
  private:
   struct Body;
@@ -74,7 +74,7 @@ class SurfacePublisher {
   /// and `vibration_modes`.
   SurfacePublisher(const ModelInputs& inputs, const ElasticTensors& tensors);
 
-  /// Tissue has been cut: what was told is of one that is no more.
+  /// Tissue has been cut: the published surface is out of date.
   void forget() noexcept;
 
   using Tool = ClientModel::Tool;
@@ -85,7 +85,7 @@ class SurfacePublisher {
     const ElasticTensors& tensors;
   };
   /// A step begins. `waits`: for the background, as above; else what it made is in use as soon as it is
-  /// there, and what is told depends on the machine. Allocates where it begins or ends anything,
+  /// there, and what is published depends on the machine. Allocates where it begins or ends anything,
   /// O(tetrahedra).
   void step(std::span<const Tool> tools, const Tissue& tissue, bool waits = true);
 

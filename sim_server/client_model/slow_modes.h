@@ -18,7 +18,7 @@ namespace palpate::sim {
 /// Setting of models that need no modes themselves.
 struct ClientModes {
   static constexpr int kDefault = 40;
-  int modes = kDefault;  ///< `client_modes`, that clients are told of, [0, kMaxPublishedModes]
+  int modes = kDefault;  ///< `client_modes`: largest number of published ones, [0, kMaxPublishedModes]
 
   static constexpr std::array<std::string_view, 1> kKeys{"client_modes"};
   static ClientModes read(const Config& config);
@@ -55,7 +55,7 @@ struct PublishedModes {
   /// no allocation.
   void take_out(std::span<const int> vertices, const Eigen::VectorXd& yields,
                 ContactPatch& patch) const noexcept;
-  /// Adds how hard these loads drive each of the told modes, N/sqrt(kg).
+  /// Adds how hard these loads drive each of the published modes, N/sqrt(kg).
   void add_drive(std::span<const VertexLoad> loads, Eigen::Ref<Eigen::VectorXd> drive) const noexcept;
   /// Returns the static compliance of each published mode, 1 / w^2, and 0 for the others.
   Eigen::VectorXd published_at_rest() const;

@@ -99,7 +99,8 @@ void show_tool(const SessionInput& input, const ServedTools::Outcome* outcome, d
                SeenTool& seen) noexcept {
   const bool lost = (input.state.flags & protocol::ToolState::kDeviceLost) != 0;
   seen.held = input.session != 0 && !lost;
-  if (!seen.held) seen = {.pose = seen.pose, .sample = seen.sample};  // nobody feels what the last one felt
+  if (!seen.held)
+    seen = {.pose = seen.pose, .sample = seen.sample};  // the force of the last holder is not shown
   if (seen.held) seen.pose = pose_of(input.state);
   if (outcome == nullptr || !seen.held) return;
   const ToolForce& force = outcome->force;

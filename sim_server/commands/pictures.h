@@ -17,7 +17,7 @@ std::function<void(std::span<const Vec3>, std::vector<float>&)> strain_energy_of
     const Scene& scene, const Simulation& simulation);
 
 /// Each fills in what a page is shown; no allocation, but for the triangles of an organ that is cut.
-/// `outcome`: of the newest step; null: there was none, and what was felt before stays. `t`: s.
+/// `outcome`: of the newest step; null: there was none, and the forces before stay. `t`: s.
 void show_tool(const SessionInput& input, const ServedTools::Outcome* outcome, double t,
                SeenTool& seen) noexcept;
 /// Positions, and what the tools put on the surface.

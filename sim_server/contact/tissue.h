@@ -81,7 +81,7 @@ class Tissue {
     Vec3 carried = Vec3::Zero();    // how far it and the organ have gone since, m
     std::vector<Vec3> shift;        // how far the surface has gone since then besides, m
     double remaining = 0;           // the share of `shift` that is still to come
-    bool shift_of_moved = false;    // it is told of what `moved_` says alone
+    bool shift_of_moved = false;    // the model knows only what `moved_` says
     std::uint64_t solved_in = 0;    // the motion in which that was
     std::uint64_t looked_in = 0;    // that in which it last looked for contact, at `positions`; 0: elsewhere
     std::vector<Vec3> positions_at, free_at;  // of the surface, at that

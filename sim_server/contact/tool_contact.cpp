@@ -435,7 +435,7 @@ void ToolContact::predict(Eigen::Ref<Eigen::VectorXd> u) noexcept {
     moved.noalias() += patch_.compliance.block(0, 3 * node, size, 3) * (change.per_motion * motion);
   }
   predictor_.changes.clear();
-  // A surface that would go much farther than the tool is about to snap, and nothing is foretold of where to.
+  // A surface that would go much farther than the tool is about to snap to a place that nothing predicts.
   if (moved.cwiseAbs().maxCoeff() <= 2 * motion.norm()) u.head(size) += moved;
 }
 

@@ -232,7 +232,7 @@ class ToolContact {
       int vertex;
       Mat3 per_motion;  // N/m
     };
-    std::vector<LoadChange> changes;  // none: nothing is foretold
+    std::vector<LoadChange> changes;  // none: nothing is predicted
     Vec3 from = Vec3::Zero();         // m
   };
   Predictor predictor_, stored_predictor_;

@@ -48,7 +48,7 @@ void ToolContact::place_outside(const ToolPose& pose, ToolTissue tissue) {
 }
 
 /// Whether the tissue has closed over a tool that touched it, as after a change of shape beyond what its
-/// compliance foretold. Then the tool stands before the surface again, without a load, and has not arrived.
+/// compliance predicted. Then the tool stands before the surface again, without a load, and has not arrived.
 /// Where that is farther away than a tool drags tissue, the surface is that of an equilibrium that was not
 /// found: the tool stays, without a load.
 bool ToolContact::recover_from_inside(ToolTissue tissue) {

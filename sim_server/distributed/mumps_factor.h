@@ -25,7 +25,7 @@ struct MumpsCosts {
 class MumpsFactor final : public FactoredMatrix {
  public:
   /// `solve` needs `use` to be `kInverseAndSolve`. Throws `Error`, beginning with `where`, where A is not
-  /// positive definite, or memory ends on some rank: told from the analysis, before it is taken. Memory on
+  /// positive definite, or memory ends on some rank: known from the analysis, before it is taken. Memory on
   /// rank 0: A once more with its indices, S, and room for S^-1.
   MumpsFactor(const SparseMatrix& lower, std::span<const int> stored, FactorUse use, const std::string& where,
               const std::function<void(const std::string&)>& report);

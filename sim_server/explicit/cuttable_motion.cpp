@@ -142,7 +142,7 @@ void CuttableMotion::restrict_contact(std::span<const Neighbourhood> places,
   if (state_.near.vertices().empty() && !state_.exposed.empty()) state_.near.add(state_.exposed.front());
 }
 
-/// Contact begins to load a vertex in motion that it did not look at: that is told from here on.
+/// Contact begins to load a vertex in motion that it did not look at: that vertex is published from here on.
 void CuttableMotion::observe(int vertex) noexcept {
   const bool published =
       !state_.near.narrowed() || state_.instant == 0 || body_->first[static_cast<std::size_t>(vertex)] < 0;

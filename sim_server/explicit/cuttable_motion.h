@@ -10,15 +10,15 @@
 
 namespace palpate::sim {
 
-/// Linear elastic tissue in motion that is cut while it is felt: explicit dynamics with a tensor per vertex
-/// and edge (`ExplicitMotion`), all of the body or, beside a `CondensedPart`, the vertices that what can be
-/// cut has, with some around them. Contact is solved at each sub-step of h, over which each vertex in motion
-/// gives way alone, by h^2 / m (`LumpedCompliance`): nothing that was computed beforehand is of tissue that
-/// is no more. Sub-steps are as short as the stiffest elements ask for, so that they stay stable whatever is
-/// removed; the very stiffest get a little more mass instead (`MassScaling`). Clients are told no tangents:
-/// those of so short a time are far too steep; but, while it is left alone, the surface near the tools with
-/// its slow modes (`SurfacePublisher`). At such short instants contact in a pit of
-/// a coarse mesh chatters by some percent; more `instants` end that.
+/// Linear elastic tissue in motion that is cut while tools touch it: explicit dynamics with a tensor per
+/// vertex and edge (`ExplicitMotion`), all of the body or, beside a `CondensedPart`, the vertices that what
+/// can be cut has, with some around them. Contact is solved at each sub-step of h, over which each vertex in
+/// motion gives way alone, by h^2 / m (`LumpedCompliance`): nothing that was computed beforehand is of tissue
+/// that is no more. Sub-steps are as short as the stiffest elements ask for, so that they stay stable
+/// whatever is removed; the very stiffest get a little more mass instead (`MassScaling`). No tangents are
+/// published: those of so short a time are far too steep; but, while it is left alone, the surface near the
+/// tools with its slow modes (`SurfacePublisher`). At such short instants contact in a pit of a coarse mesh
+/// chatters by some percent; more `instants` end that.
 ///
 /// The rest follows the border at each sub-step: what it does there is part of the stiffness of an explicit
 /// step, no stiffer than the border is where the rest is held (Guyan), so that sub-steps need not be shorter

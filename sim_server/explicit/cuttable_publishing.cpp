@@ -1,4 +1,4 @@
-// What clients are told of a tissue that is cut, and reports of what it holds: parts of CuttableMotion.
+// What is published of a tissue that is cut, and reports of its memory: parts of CuttableMotion.
 #include <fmt/core.h>
 
 #include "sim_server/explicit/cuttable_motion.h"

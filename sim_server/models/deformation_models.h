@@ -31,7 +31,7 @@ struct DeformationModelRow {
   Materials materials = Materials::kNone;
   bool moves = false;  ///< the organ has inertia, or goes as one piece; false: at rest at every instant
   bool flies = false;  ///< nothing need hold the body: it has mass
-  bool cuts = false;   ///< tissue can be removed and parted while it is felt (`remove`, `part`)
+  bool cuts = false;   ///< tissue can be removed and separated while tools touch it (`remove`, `part`)
   bool needs_cutting = false;  ///< only of scenes with [cutting]
   bool condenses = false;      ///< all that its set-up takes long for can be condensed (`Condensed`)
   /// Parts that other models build and this one does not need, for `explain`.

@@ -1,4 +1,4 @@
-// Tissue of Implicit that is removed or parted while it is felt.
+// Tissue of Implicit that is removed or separated while tools touch it.
 #include <algorithm>
 
 #include "sim_server/mesh/cut_mesh.h"

@@ -106,7 +106,7 @@ void TensorMass::precompute(const ModelInputs& inputs) {
       for (Eigen::Index r = 0; r < columns.rows(); ++r) columns(r, c) = motion.state.u[number(r, c)];
     }
   };
-  // A call of a second on one core where edges are many and sub-steps short; then each two are told.
+  // A call of a second on one core where edges are many and sub-steps short; then each two are reported.
   const double work = static_cast<double>(sub_steps_) * static_cast<double>(tensors_.edges());
   const auto calls = static_cast<std::size_t>(std::clamp(kWorkPerReport / work, 2.0, 16.0));
   compliance_.compute(kWide, respond, inputs.progress, calls);

@@ -21,7 +21,7 @@ namespace palpate::sim {
 /// stage of RATTLE, Andersen 1983, J. Comput. Phys. 52:24). A period costs N sub-steps, twice that in
 /// contact where N is not 1. What the body does by itself and what it does by its supports add up, as it is
 /// linear: where supports move, the second comes from `support_responses`, with inertia and damping and exact
-/// in time, and costs no sub-step anything. Clients are told its slow modes (`PublishedMotion`), for which
+/// in time, and costs no sub-step anything. Its slow modes are published (`PublishedMotion`), for which
 /// set-up factors K. Tissue that can be cut moves as `CuttableMotion` says.
 class TensorMass final : public DeformationModel,
                          public ClientModel,

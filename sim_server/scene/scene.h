@@ -62,7 +62,7 @@ struct ToolSettings {
   std::optional<Reach> reach;  ///< absent: the whole organ
   std::string where;           ///< "FILE:LINE" of this section
   std::string reach_where;     ///< "FILE:LINE" of what tells `reach`; empty where it is absent
-  bool stays_within = false;   ///< `reach` is of its tip, by [tool.workspace] or [tool.cone]: leaving is told
+  bool stays_within = false;   ///< `reach` is of its tip, by [tool.workspace] or [tool.cone]: leaving warns
   /// Buttons of which any, while pressed, makes it hold the surface near it; 0: none does, [0, 65535].
   std::uint16_t grasp_buttons = 0;
   std::optional<Vec3> grasp_place{};  ///< tool centre, m, from where it holds the resting surface always

@@ -94,7 +94,7 @@ void NetLink::record(Time t, const Endpoint& peer, Direction direction, std::spa
   }
 }
 
-/// Who says Hello in another version is told which one is spoken here.
+/// A Hello of another version is answered with the version that is spoken here.
 void NetLink::refuse(Verdict verdict, std::span<const std::byte> bytes, const Endpoint& to) {
   stats_.reject(verdict);
   const auto other = protocol::other_version(bytes);

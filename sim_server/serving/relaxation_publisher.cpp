@@ -50,7 +50,7 @@ void RelaxationPublisher::publish_modes(const ModalMotion& state, std::size_t ro
   next_mode_ += count;
 }
 
-/// Once around at most, on from the last one that was told.
+/// Once around at most, on from the last one that was sent.
 void RelaxationPublisher::publish_vertices(const ModalMotion& state, std::size_t room,
                                            RelaxedState& published) noexcept {
   const auto psi = [&](std::size_t number, std::size_t term) -> const Vec3& {

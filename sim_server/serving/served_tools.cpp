@@ -171,7 +171,7 @@ std::optional<ForceSample> ServedTools::paused(std::size_t tool, const SessionIn
   return last;
 }
 
-/// What the simulation is told of a tool, and asked: an old state deserves no new answer.
+/// The state of a tool for the simulation, with the requests: an old state deserves no new answer.
 ToolInput ServedTools::input_of(std::size_t tool, const SessionInput& input) noexcept {
   const protocol::ToolState& state = input.state;
   const auto says = [&](std::uint16_t flag) { return (state.flags & flag) != 0; };

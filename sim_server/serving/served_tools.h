@@ -72,7 +72,7 @@ class ServedTools {
   std::vector<std::shared_ptr<SurfacePager>> pagers_;  // of each tool
   std::vector<protocol::SurfaceState> surfaces_;       // of each tool; version 0: none
   std::uint32_t published_version_ = 0;
-  std::optional<RelaxationPublisher> relaxation_;  // where modes are told, of one tool, that relax
+  std::optional<RelaxationPublisher> relaxation_;  // where modes of one tool are published that relax
   std::vector<Holder> holders_;
   std::vector<std::vector<PathPoint>> paths_;  // within a step, of each tool
   std::vector<ToolInput> inputs_;

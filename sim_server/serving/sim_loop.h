@@ -75,7 +75,7 @@ struct LoopTurn {
 class LoopObserver {
  public:
   virtual ~LoopObserver() = default;
-  /// Asked before each step that is due. While it is paused, clients are told so ten times a second, and by
+  /// Asked before each step that is due. While it is paused, samples say so ten times a second, and by
   /// the answers to single steps: they let go of their forces.
   struct Leave {
     bool step = true, paused = false;
@@ -90,7 +90,7 @@ class LoopObserver {
 class SimLoop {
  public:
   /// `rate_hz` 0: steps as soon as a new pose of any tool is there.
-  /// `tools`: of the scene, which outlives this. `errors`: gets each step, and is told to clients.
+  /// `tools`: of the scene, which outlives this. `errors`: gets each step, and is published.
   /// `observer`: may be null; outlives this.
   SimLoop(Simulation& simulation, double rate_hz, SimMailboxes& mailboxes,
           std::span<const ToolSettings> tools, ErrorOfForce& errors, LoopObserver* observer = nullptr);
@@ -119,7 +119,7 @@ class SimLoop {
 
   const Simulation& simulation_;
   ServedTools served_;
-  std::uint32_t passed_on_ = 0;  // which surface that is told
+  std::uint32_t passed_on_ = 0;  // number of the published surface
   SimMailboxes& mailboxes_;
   std::span<const ToolSettings> tools_;
   Time period_, next_search_{}, next_published_{};

@@ -56,7 +56,7 @@ SurfacePager::SurfacePager(const Simulation& simulation, std::size_t tool)
   state_.version = hash();
 }
 
-/// All that the tool can touch; of a surface that can be cut, what is told of it.
+/// All that the tool can touch; of a surface that can be cut, its published part.
 void SurfacePager::find_surface() {
   const auto is_published = [this](int v) {
     return nearby_ == nullptr || std::ranges::binary_search(nearby_->shape.vertices, v);

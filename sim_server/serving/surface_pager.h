@@ -44,7 +44,7 @@ class SurfacePager {
 
   const Simulation& simulation_;
   std::shared_ptr<const PublishedSurface> nearby_;  // of a surface that can be cut
-  const PublishedModes* published_;                 // null: none are told
+  const PublishedModes* published_;                 // null: none are published
   std::uint8_t tool_;
   std::vector<int> vertices_;        // surface vertex of each vertex of the model
   std::vector<Vec3> rest_;           // of these, m

@@ -14,7 +14,7 @@ class SetupCache {
   /// $XDG_CACHE_HOME/palpate, else ~/.cache/palpate; nothing where neither is known.
   static std::optional<std::filesystem::path> usual_folder();
 
-  /// The matrix kept under a key; nothing where there is none. One that is not sound is told of and removed.
+  /// The matrix kept under a key; nothing where there is none. One that is not sound is reported and removed.
   std::optional<MappedMatrix> find(const Digest& key) const;
   /// Keeps a matrix; where that is not possible, a warning says why.
   void keep(const EntryHeader& header, const Eigen::Ref<const Eigen::MatrixXd>& matrix) const;

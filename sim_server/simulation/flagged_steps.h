@@ -13,7 +13,7 @@ struct FlaggedSteps {
   std::uint64_t inside_out = 0;    ///< elements stay turned inside out: too much for this law of the tissue
   std::uint64_t not_balanced = 0;  ///< the model found no equilibrium under the loads
   std::uint64_t tools = 0;         ///< the contacts of several tools did not settle together
-  std::uint64_t contact = 0;       ///< that of one tool did not, or it cannot be told where it touches
+  std::uint64_t contact = 0;       ///< that of one tool did not, or it is unknown where it touches
   /// Returns the steps since `before`.
   FlaggedSteps operator-(const FlaggedSteps& before) const {
     return {threw - before.threw,           ran_away - before.ran_away,

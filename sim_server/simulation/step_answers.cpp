@@ -8,14 +8,14 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kNearby = 2;         // of the tool radius: how far off a surface is told
+constexpr double kNearby = 2;         // of the tool radius: how far off a surface is published
 constexpr double kProbeDepth = 0.04;  // of the tool radius: how deep to ask how stiff it is
 constexpr double kFastestTool = 10;   // m/s: faster is an encoder that jumped, which others do not feel
 constexpr double kMaxAhead = 2e-3;    // m; without a bound, fast tools fare worse
 
 }  // namespace
 
-/// How the tools move the surface under each other, if any of them is to be told.
+/// How the tools move the surface under each other, if any client requests it.
 void Simulation::couple(std::span<const ToolInput> inputs) {
   status_.coupled = coupling_ && tissue_.traits.publishes_tangents &&
                     std::ranges::any_of(inputs, [](const ToolInput& input) {
@@ -49,7 +49,7 @@ void Simulation::add_wanted(std::size_t tool, const ToolInput& input) {
   if (!input.pose || answer.flagged) return;
   const Vec3& p_W = input.pose->p_W;
   ToolRequest request = input.request;
-  // Nor of the tissue alone where a blade is felt, too.
+  // Nor of the tissue alone where the force of a blade is rendered, too.
   if (!tissue_.traits.publishes_tangents || (cut_ && cut_->resists(tool))) {
     request.at_tool = false;
     request.ahead.reset();
@@ -119,7 +119,7 @@ Vec3 Simulation::surface_shift(std::size_t tool, const Vec3& p_W) {
   return carried + residual_shift(tool, vertex);
 }
 
-/// How far the other tools push a vertex, but for what they do by the told modes, m.
+/// How far the other tools push a vertex, but for what they do by the published modes, m.
 Vec3 Simulation::residual_shift(std::size_t tool, int vertex) {
   Vec3 shift = Vec3::Zero();
   for (std::size_t other = 0; other < tools_.size(); ++other) {

@@ -15,7 +15,7 @@ namespace palpate::sim {
 ///   w_i = G_io r_o,   r_o = -K_o (v_o - G_oo r_o - G_oi r_i),
 /// so that w_i = u_i + M_i r_i. The tangent with the places of the others held, not their loads, is
 /// K_i (I - M_i K_i)^-1. Exact where each grasps one vertex of linear tissue. Tools so close that this has no
-/// meaning (|M_i K_i| above 0.9) are told of no other. Only set-up allocates. One thread.
+/// meaning (|M_i K_i| above 0.9) are published as if alone. Only set-up allocates. One thread.
 class ToolCoupling {
  public:
   /// Makes room for so many tools, vertices of the surface, and loads of all tools at most.

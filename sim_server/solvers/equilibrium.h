@@ -36,7 +36,7 @@ struct Equilibrium {
 /// The static equilibrium f_int(x) = f_ext(x) by Newton's method with line search on the energy, in one
 /// increment of the load, or as many as it takes. Where the tangent stiffness is not positive definite, as
 /// much of the stiffness at rest is added as makes it so. Throws `Error`, beginning with `where`, when the
-/// fixed nodes do not hold the body or no equilibrium is found. Told about its increments.
+/// fixed nodes do not hold the body or no equilibrium is found. Reports its increments.
 Equilibrium find_equilibrium(const Solid& solid, const StaticLoad& load, const std::string& where,
                              const std::function<void(double fraction)>& progress = {},
                              const EquilibriumSettings& settings = {});

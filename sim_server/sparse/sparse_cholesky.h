@@ -21,7 +21,7 @@ class SparseCholesky final : public FactoredMatrix {
   enum class Precision { kDouble, kSingle };
 
   /// Factors the matrix whose lower triangle is given, in 3 x 3 blocks as `StiffnessMatrix` has them. Throws
-  /// `Error`, beginning with `where`, when its factor would take more than `free` bytes (told from its
+  /// `Error`, beginning with `where`, when its factor would take more than `free` bytes (known from its
   /// pattern, before the numbers are allocated), when it is not positive definite, or singular but for
   /// rounding.
   SparseCholesky(const SparseMatrix& lower, const std::string& where,

@@ -29,7 +29,7 @@ class SurfaceCompliance final : public ComplianceSource {
  public:
   /// Numbers the rows; W is not there yet. Throws `Error` without material or fixed nodes, where all
   /// reachable vertices are fixed, or where W would take more than 4 GB, or than there are free: of tiles, as
-  /// far as that can be told beforehand.
+  /// far as that is known beforehand.
   explicit SurfaceCompliance(const ModelInputs& inputs);
 
   /// Set-up: W is the rows and columns `unknowns` of an inverse, three for each of `vertices`. On all cores;

@@ -40,7 +40,7 @@ void refine_references(StudyPlan& plan, const Box& near);
 
 /// The mesh of a case. Throws `Error`.
 TetMesh mesh_of(const StudyCase& one);
-/// Its simulation, told about. Throws `Error`.
+/// Its simulation, with progress reported. Throws `Error`.
 Simulation simulation_of(const StudyCase& one, const Progress& progress = kSilent);
 
 /// Plans the study of a scene. Throws `Error` for a scene without tissue. Set-up only; reads meshes.

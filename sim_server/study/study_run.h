@@ -23,8 +23,8 @@ struct Trace {
 /// `find_press` says. Builds the scene once.
 Trajectory press_and_slide(const StudyCase& one);
 
-/// Runs a case along a motion for `seconds`, displacement told at `sites` (m, rest, on or near the surface).
-/// One thread and what the model uses; takes as long as it takes.
+/// Runs a case along a motion for `seconds`, displacement recorded at `sites` (m, rest, on or near the
+/// surface). One thread and what the model uses; takes as long as it takes.
 Trace run_case(const StudyCase& one, const Trajectory& motion, double seconds, std::span<const Vec3> sites);
 
 /// The box of a motion, larger by `margin` (m) on all sides.

@@ -3,7 +3,7 @@
 
 namespace palpate::sim {
 
-/// A case of a study with all that is told about it.
+/// A case of a study with all that is reported about it.
 struct StudyRow {
   std::string scene;
   StudyCase one;

@@ -7,7 +7,7 @@
 
 namespace palpate::sim {
 
-/// Told about set-up work: what is being done, and which share of it (0 to 1). Called at the beginning of
+/// Gets the progress of set-up: what is being done, which fraction of it (0 to 1). Called at the beginning of
 /// each stage at least; with 1 at the end of the last, so that stages cover the whole set-up (`SetupTimes`).
 using Progress = std::function<void(std::string_view what, double fraction)>;
 

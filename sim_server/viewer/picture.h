@@ -103,7 +103,7 @@ struct SeenClient {
   static constexpr std::size_t kMostStates = 8;  ///< at least one for each flag of `Telemetry` but the motors
   using Name = std::array<char, 32>;             ///< ended by 0
   std::uint8_t tool = 0, laws = 0, interventions = 0, states = 0;
-  Name law{};  ///< the one felt; behind a colon, which one stands in
+  Name law{};  ///< the rendered one; behind a colon, its substitute
   std::array<Name, kMostLaws> law_names{};
   std::array<float, kMostLaws> errors_percent{};  ///< NaN: not scored
   std::array<Name, kMostInterventions> intervention_names{};

@@ -55,7 +55,7 @@ struct Viewer::Server {
       lws_close_status why;
       std::string text;
     };
-    std::optional<End> end{};  // it is told so, and closed, when its connection takes that
+    std::optional<End> end{};  // it gets the reason, and is closed, when its connection takes that
   };
   struct Timer {
     lws_sorted_usec_list_t entry{};
