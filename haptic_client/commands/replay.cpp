@@ -144,7 +144,7 @@ void say_how_exact(const Json& capture, const CapturedRun& run, const std::strin
     log::warning(
         "{}: {} ticks, {} samples and {} pages of the surface are missing, {} ticks have times that jump: "
         "the "
-        "forces differ from those felt there",
+        "forces differ from those rendered there",
         file, count("missing_ticks"), count("missing_samples"), count("missing_pages"),
         count("backward_ticks"));
   }

@@ -174,7 +174,7 @@ int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& op
   if (connected)
     print_report(report);
   else
-    fmt::print("haptic_client: ended before a server at {} had answered; nothing was felt\n",
+    fmt::print("haptic_client: ended before a server at {} had answered; nothing was rendered\n",
                configs.front().server);
   for (std::size_t i = 0; i < configs.size(); ++i) {
     const DeviceSettings& device = configs[i].device;

@@ -390,7 +390,7 @@ Json link_report(const NetLink& link) {
 
 void print_report(const Json& report) {
   for (const Json& tool : report["tools"]) {
-    fmt::print("haptic_client: {}, felt: {}\n", tool["device"].get<std::string>(), rendered_text(tool));
+    fmt::print("haptic_client: {}, rendered: {}\n", tool["device"].get<std::string>(), rendered_text(tool));
     if (tool.contains("loop")) print_loop(tool["loop"]);
     print_tool(tool);
     print_scores(tool);

@@ -117,13 +117,14 @@ void HeldTool::report_weakness() {
     const std::string why =
         gain < RenderedFraction::kHalf
             ? fmt::format(
-                  "the wall is too stiff for this rate and latency, so it is felt at {:.0f} % of its "
+                  "the wall is too stiff for this rate and latency, so it is rendered at {:.0f} % of its "
                   "stiffness; a law with tangents, a faster loop or a softer organ help",
                   100 * gain)
             : fmt::format("more than [limits] force = {:g} N, or than it may change by",
                           config_.device_limits().max_force);
-    log::warning("{}for half a second, less than half of the force has been felt ({:.2f} of {:.2f} N): {}",
-                 name_, loop_.newest_newton.load(), law, why);
+    log::warning(
+        "{}for half a second, less than half of the force has been rendered ({:.2f} of {:.2f} N): {}", name_,
+        loop_.newest_newton.load(), law, why);
   }
   weak_ = weak;
 }

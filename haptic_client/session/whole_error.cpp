@@ -42,7 +42,7 @@ Json error_budget_report(const std::string& method, const Observation& observati
                   {{"mesh", published.mesh.source == ErrorSource::kNone ? "none: this tissue has no mesh"
                                                                         : how_of(published.mesh)},
                    {"motion", how_of(published.time_step)},
-                   {"extrapolation", "unknown: nothing was felt between two samples"}}}};
+                   {"extrapolation", "unknown: nothing was rendered between two samples"}}}};
   const auto row = std::ranges::find(scoring.names(), method);
   if (row == scoring.names().end() || scoring.scored() == 0) return report;
   const auto at = static_cast<std::size_t>(row - scoring.names().begin());

@@ -166,7 +166,7 @@ def heading_of(trace, report, server, tool):
         node = tools[tool - 1]
         found = at_work(node["rendered"]) if "rendered" in node else None
         if found:
-            parts.append(f"felt: {in_words(found[0])}, {share_text(found[1])} of the time")
+            parts.append(f"rendered: {in_words(found[0])}, {share_text(found[1])} of the time")
         if len(tools) > 1:
             parts.append(f"tool {tool} of {len(tools)}")
     if server:

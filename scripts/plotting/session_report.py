@@ -218,7 +218,7 @@ def read_tool(report, server, node, index, count):
     scene = " ".join(scene.split()) or "session"
     if len(scene) > LONGEST_NAME:
         scene = scene[:LONGEST_NAME - 1] + "\N{HORIZONTAL ELLIPSIS}"
-    parts = [scene, f"felt: {felt_name}", f"{tool.rate_hz:g} Hz" if tool.rate_hz else "",
+    parts = [scene, f"rendered: {felt_name}", f"{tool.rate_hz:g} Hz" if tool.rate_hz else "",
              duration(timeline.edges[-1] - timeline.edges[0]),
              f"tool {index + 1} of {count}" if count > 1 else ""]
     tool.heading = "   \N{MIDDLE DOT}   ".join(part for part in parts if part)

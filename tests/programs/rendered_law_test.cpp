@@ -55,10 +55,10 @@ TEST_CASE("rendered law: where samples bring the triplet alone, everything names
   CHECK(r.tool["rendered"]["laws"] == Json{{"learned_stiffness", 1.0}});
   CHECK(r.tool["methods"]["local_contact"]["at_work"]["law"] == "learned_stiffness");
   CHECK(r.tool["methods"]["constant"]["at_work"]["law"] == "constant");
-  CHECK_THAT(r.said, Catch::Contains("felt: learned_stiffness 100 % (asked for: local_contact)"));
+  CHECK_THAT(r.said, Catch::Contains("rendered: learned_stiffness 100 % (asked for: local_contact)"));
   CHECK_THAT(r.said, Catch::Contains("local_contact (as learned_stiffness 100 %)"));
   CHECK_THAT(drawn(r.report(), "tool.heading"),
-             Catch::Contains("felt: learned_stiffness (asked: local_contact)"));
+             Catch::Contains("rendered: learned_stiffness (asked: local_contact)"));
   CHECK_THAT(drawn(r.report(), "tool.names['local_contact']"),
              Catch::Contains("local_contact (as learned_stiffness 100 %)"));
 }
@@ -70,7 +70,7 @@ TEST_CASE("rendered law: where it was itself, its share is told, and all shares 
   for (const auto& [law, fraction] : r.tool["rendered"]["laws"].items()) sum += fraction.get<double>();
   CHECK(sum == Approx(1));
   CHECK(r.tool["rendered"]["laws"]["local_contact"].get<double>() > 0.9);
-  CHECK_THAT(r.said, Catch::Contains("felt: local_contact ") && !Catch::Contains("asked for"));
+  CHECK_THAT(r.said, Catch::Contains("rendered: local_contact ") && !Catch::Contains("asked for"));
   CHECK(drawn(r.report(), "tool.felt") == "local_contact\n");
 }
 #endif

@@ -203,7 +203,7 @@ TEST_CASE("Ctrl-C while waiting for a server ends the client, exit 0, with its r
   client.signal(SIGINT);
   CHECK(client.wait() == 0);
   CHECK(read_json(report)["tools"][0]["loop"]["ticks"] == 0);
-  CHECK(client.output().find("nothing was felt") != std::string::npos);
+  CHECK(client.output().find("nothing was rendered") != std::string::npos);
   CHECK(client.output().find("largest force") == std::string::npos);
 }
 
