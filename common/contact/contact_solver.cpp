@@ -6,13 +6,13 @@
 namespace palpate {
 namespace {
 
-constexpr double kLongestMove = 0.2;  // of the tool radius, per iteration
-constexpr double kFirstStep = 2.0 / 3;
-// How far beyond the radius features are considered: a multiple of what moved last, within shares of the
-// radius.
-// Of the largest patch: how much may be near enough to touch, where Newton steps are taken; never fewer.
+constexpr double kLongestMove = 0.2;    // of the tool radius, per iteration
+constexpr double kFirstStep = 2.0 / 3;  // of the way to the solution of the first linearised contact
+// Of the largest patch: how much may be near enough to touch, where Newton steps are taken.
 constexpr double kTouching = 0.5;
-constexpr int kFewest = 96;
+constexpr int kFewest = 96;  // never fewer nodes, or contacts: those of a client's patch (`ContactOnPatch`)
+// How far beyond the radius features are considered: a multiple of what moved last, within fractions of the
+// radius.
 constexpr double kMargin = 4, kMinReach = 1e-3, kMaxReach = 0.05;
 
 /// Displacement difference tip minus surface along a direction: a row of W u.

@@ -8,9 +8,10 @@
 namespace palpate {
 namespace {
 
-constexpr int kMaxNewton = 30;  // steps; the first so many are taken whole, wherever they lead
+constexpr int kMaxNewton = 30;  // steps
+// Complete steps, wherever they lead; and how often a later one is halved until it gains.
 constexpr int kFreely = 8, kHalvings = 6;
-constexpr double kGain = 0.95;
+constexpr double kGain = 0.95;            // of the residual before: a halved step must leave less
 constexpr int kRounds = 6, kSweeps = 20;  // rounds of sweeps, each twice as many as before
 constexpr double kTolerance = 1e-12;      // of the residual, by contact
 

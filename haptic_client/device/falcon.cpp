@@ -25,7 +25,7 @@ void drain(UsbTransport& port) noexcept {
 
 /// Zero torque, three times, and that it left; closes the port.
 bool send_zero(UsbTransport& port) {
-  constexpr int kTimes = 3;
+  constexpr int kTimes = 3;  // as nothing checks the answers
   FalconMachine::normal_mode(port);
   for (int i = 0; i < kTimes; ++i) {
     drain(port);
@@ -87,7 +87,7 @@ Falcon::~Falcon() {
 /// What is on the way goes first: a port takes one transfer at a time. Until the zero that follows it has
 /// left, four times at most.
 bool Falcon::stop() noexcept {
-  constexpr int kTimes = 4;
+  constexpr int kTimes = 4;  // of a second at most, by `drain`
   bool left = false;
   for (int i = 0; i < kTimes && !left; ++i) {
     drain(*port_);

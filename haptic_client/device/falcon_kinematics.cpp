@@ -81,6 +81,7 @@ std::optional<Mat3> jacobian(const Vec3& p_D) noexcept {
 }
 
 std::optional<Vec3> grip_position(const Vec3& angles, const Vec3& guess) noexcept {
+  // From random places to random places of the workspace it took up to 45 and 21.
   constexpr int kMostSteps = 50, kMostHalvings = 30;
   Vec3 p = guess;
   auto current = leg_angles(p);

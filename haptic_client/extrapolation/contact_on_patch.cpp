@@ -9,7 +9,7 @@
 namespace palpate::client {
 namespace {
 
-constexpr int kMostNodes = 96, kMostTriangles = 160;
+constexpr int kMostNodes = 96, kMostTriangles = 160;  // a flat patch has fewer than two triangles a node
 // Of the tool radius: how far from the tool a patch reaches, on the deformed surface; and how far the tool
 // may go on it, as what it presses may move as far again.
 constexpr double kMargin = 0.25, kLongestIncrement = 0.12;

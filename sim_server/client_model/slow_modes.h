@@ -17,7 +17,7 @@ namespace palpate::sim {
 
 /// Setting of models that need no modes themselves.
 struct ClientModes {
-  static constexpr int kDefault = 40;
+  static constexpr int kDefault = 40;  ///< as `modes` of `reduced`
   int modes = kDefault;  ///< `client_modes`: largest number of published ones, [0, kMaxPublishedModes]
 
   static constexpr std::array<std::string_view, 1> kKeys{"client_modes"};

@@ -113,7 +113,7 @@ Outcome outcome_of(const Dynamics& dynamics) {
 /// One step of `h` to balance, at time `t`. Returns the steps of Newton's method that it took; 0: no balance.
 int step_to_balance(Dynamics& dynamics, const Loads& loads, double t, double h, double tolerance,
                     std::vector<Vec3>& external) {
-  constexpr int kMostNewton = 50;
+  constexpr int kMostNewton = 50;     // steps, until there counts as no balance
   constexpr double kRounding = 1e-6;  // of the forces at work
   dynamics.start_step(h);
   loads.put_held(t, dynamics.mutable_position());

@@ -7,7 +7,7 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kMostBalls = 3;
+constexpr double kMostBalls = 3;   // as dense as the densest, along an axis
 constexpr double kNothing = 1e-9;  // m
 
 /// Whether the triangle's bounding box comes within `reach` of that of p and q: cheap, never wrong on the

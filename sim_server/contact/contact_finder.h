@@ -18,7 +18,8 @@ class ContactFinder {
   /// some to spare: `room` times it. `held`: surface vertices that are held to something, ascending.
   ContactFinder(std::span<const Vec3> rest, std::vector<Triangle> closed, std::vector<Triangle> touchable,
                 double reach, double length = 0, std::span<const int> held = {}, double room = kUsualRoom);
-  static constexpr double kUsualRoom = 1.5, kRoomOfCuts = 3;
+  static constexpr double kUsualRoom = 1.5;  ///< for a surface that deforms
+  static constexpr double kRoomOfCuts = 3;   ///< for one that cuts make denser than at rest, too
 
   /// Replaces the triangles, of the same vertices. O(n), once in some hundred triangles that are new O(n
   /// log^2 n).

@@ -12,10 +12,10 @@ namespace {
 constexpr double kIncrement = 0.5;  // of the tool radius: how far the tool goes between two contact solves
 // With friction, which follows the path: shorter, as many as a step has time for.
 constexpr double kFrictionIncrement = 0.01, kFrictionIncrements = 16;
-constexpr double kMaxJump = 0.1;     // of the tool radius: what the surface may move by at once
-constexpr double kGather = 1.5;      // of the tool radius: how far from the tip the patch extends
-constexpr double kRoomOfAxis = 2.0;  // the same, as room is made for a tool that lies along the surface
-constexpr double kMaxIncrements = 256;
+constexpr double kMaxJump = 0.1;        // of the tool radius: what the surface may move by at once
+constexpr double kGather = 1.5;         // of the tool radius: how far from the tip the patch extends
+constexpr double kRoomOfAxis = 2.0;     // the same, as room is made for a tool that lies along the surface
+constexpr double kMaxIncrements = 256;  // in a step: a tool that goes further is placed anew
 // Of the tool radius: how far it presses on in one step, where the tissue is known only near its last shape.
 constexpr double kMaxPress = 2.0;
 // How far outside its free organ contact may go on: of the tool radius, and of the organ's size, whichever is

@@ -9,7 +9,7 @@
 namespace palpate::sim {
 namespace {
 
-constexpr int kMostTurns = 20;
+constexpr int kMostTurns = 20;     // of random matrices with stretches from 1e-3 to 1 none took over 6
 constexpr double kTurned = 1e-14;  // square of what the last turn changed
 constexpr double kNear = 0.01;     // square of such a change: from here on it converges as fast unscaled
 constexpr double kFlat = 1e-3;     // of the cube of its size: too flat for Newton

@@ -10,7 +10,7 @@
 
 namespace palpate::sim {
 namespace {
-constexpr int kMostProducts = 1000;
+constexpr int kMostProducts = 1000;    // of the power iteration, which ends sooner by `kSettled`
 constexpr double kSettled = 1e-6;      // growth of the Rayleigh quotient
 constexpr double kMostSubSteps = 2e4;  // no step of so many is in time
 

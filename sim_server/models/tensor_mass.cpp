@@ -29,7 +29,7 @@ ElasticTensors assemble(const ModelInputs& inputs) {
 /// is held over a few of them leaves waves which the next one has to answer, so that contact chatters (seen
 /// at 3, 13 and 20 instants); a period of many lets them run off.
 int usual_instants(double steps) {
-  constexpr double kMost = 100;
+  constexpr double kMost = 100;  // instants, as in Reduced::usual_instants
   return steps <= kMost ? static_cast<int>(steps) : 1;
 }
 

@@ -5,8 +5,8 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kLittle = 1e-3;  // N: what the tissue is asked about on top of its loads
-constexpr double kMostFeedback = 0.9;
+constexpr double kLittle = 1e-3;       // N: what the tissue is asked about on top of its loads
+constexpr double kMostFeedback = 0.9;  // norm; from 1 on, the series of what tools do to each other diverges
 
 double weight_of(std::span<const VertexLoad> loads) noexcept {
   double sum = 0;

@@ -4,7 +4,7 @@
 
 namespace palpate::sim {
 namespace {
-constexpr std::size_t kMostPairs = 8;
+constexpr std::size_t kMostPairs = 8;  // of 3 to 20 (Nocedal and Wright, section 7.2)
 }
 
 void QuasiNewton::add_point(const Eigen::VectorXd& x, const Eigen::VectorXd& f) {

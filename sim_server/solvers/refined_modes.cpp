@@ -7,8 +7,8 @@ namespace palpate::sim {
 
 std::optional<VibrationModes> refined_modes(const FactoredMatrix& stiffness, const Eigen::VectorXd& masses,
                                             Eigen::MatrixXd shapes) {
-  constexpr int kMost = 8;
-  constexpr double kSettled = 1e-3;
+  constexpr int kMost = 8;           // iterations of the subspace
+  constexpr double kSettled = 1e-3;  // relative change of the squared frequencies
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(shapes.cols());
   for (int k = 0; k < kMost; ++k) {
     const Eigen::MatrixXd forces = masses.asDiagonal() * shapes;

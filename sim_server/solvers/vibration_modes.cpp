@@ -7,9 +7,6 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kAccuracy = 1e-10;
-constexpr int kMostRestarts = 1000;
-
 /// v -> M^1/2 K^-1 M^1/2 v, as Spectra asks for it.
 struct Flexibility {
   using Scalar = double;
@@ -37,7 +34,7 @@ VibrationModes vibration_modes(const FactoredMatrix& stiffness, const Eigen::Vec
   Flexibility flexibility{stiffness, root};
   Spectra::SymEigsSolver<Flexibility> solver(flexibility, count, std::min<Eigen::Index>(n, 2 * count + 20));
   solver.init();
-  solver.compute(Spectra::SortRule::LargestAlge, kMostRestarts, kAccuracy);
+  solver.compute(Spectra::SortRule::LargestAlge);
   if (solver.info() != Spectra::CompInfo::Successful)
     fail("{}: the {} lowest modes of vibration were not found; ask for less", where, count);
   VibrationModes modes{solver.eigenvalues().cwiseSqrt().cwiseInverse(), solver.eigenvectors(count)};

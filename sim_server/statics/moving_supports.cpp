@@ -14,7 +14,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr int kMostSteps = 2000;
+constexpr int kMostSteps = 2000;    // of the iteration; beyond, the scene is refused
 constexpr double kSolved = 1e-12;   // relative residual, of the static answer
 constexpr double kUnbounded = 1e4;  // of the static answer: farther swings nothing
 
