@@ -36,7 +36,7 @@ enum class RefuseReason : std::uint8_t {
 /// Largest position, speed, force or tangent on the wire, m, m/s, N, N/m: what is larger is a bug or an
 /// attack.
 constexpr double kMaxMagnitude = 1e9;
-/// How far the square of a unit vector or quaternion may be from 1 on the wire.
+/// Largest difference from 1 of the square of a unit vector or quaternion on the wire.
 constexpr double kUnitTolerance = 1e-6;
 
 /// Drawn at random, once; on the wire 16 bytes.
