@@ -9,11 +9,11 @@
 namespace palpate {
 namespace {
 
-constexpr double kRoughHz = 30;
+constexpr double kRoughHz = 30;   // of the high-pass: SCORES.md, rough_percent
 constexpr double kNoticed = 0.1;  // of the force: about the smallest difference a hand can tell
 constexpr double kFloor = 0.1;    // of the peak
-constexpr Time kWindow = std::chrono::milliseconds(10);
-constexpr double kLeastWindowTicks = 2;
+constexpr Time kWindow = std::chrono::milliseconds(10);  // what a hand resolves at 100 Hz
+constexpr double kLeastWindowTicks = 2;                  // fewer have no mean
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr ErrorSizes kNoSizes{kNone, kNone, kNone, kNone, kNone};
 

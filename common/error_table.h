@@ -71,8 +71,9 @@ class ErrorTable {
   static int bin_of(double newton) noexcept;
 
  private:
-  static constexpr int kPerOctave = 8, kBins = 40 * kPerOctave;
-  static constexpr double kSmallest = 1e-6;  // N
+  static constexpr int kPerOctave = 8;           // a bin is 9 % wide
+  static constexpr int kBins = 40 * kPerOctave;  // to 1e6 N
+  static constexpr double kSmallest = 1e-6;      // N
 
   /// Ticks whose |F_ref| is of one size.
   struct Bin {
