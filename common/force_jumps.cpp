@@ -47,8 +47,7 @@ std::string snaps_text(const ForceJumps& snaps) {
 std::string unexplained_text(const ForceJumps& jumps) {
   return fmt::format(
       "between two samples the force of the simulation jumped {} times by more than 5 % of peak beyond what "
-      "the "
-      "published tangents explain, largest {:.1f} %",
+      "the published tangents explain, largest {:.1f} %",
       jumps.count, jumps.largest_percent);
 }
 

@@ -19,9 +19,9 @@ struct ForceJumps {
 
 /// Writes the two as `NAMEs` and `largest_NAME_percent`; nothing where they were not measured.
 void add_to(Json& report, const std::string& name, const std::optional<ForceJumps>& jumps);
-/// "the force of the simulation itself jumped 2 times, largest 45.8 % of peak".
+/// Returns "the force of the simulation itself jumped 2 times, largest 45.8 % of peak".
 std::string snaps_text(const ForceJumps& snaps);
-/// The same of jumps that `UnexplainedJumps` counts.
+/// Returns such a sentence on the jumps that `UnexplainedJumps` counts.
 std::string unexplained_text(const ForceJumps& jumps);
 
 /// Sizes of jumps in flat memory (40 KiB), counted against a peak that is known only at the end. The bound of

@@ -17,7 +17,7 @@ class Histogram {
 
   /// The value that a share `q` in [0, 1] of the counts does not exceed (middle of its bucket); 0 when empty.
   double quantile(double q) const noexcept;
-  /// How many counts are larger than `value`, which is rounded to a bucket.
+  /// Returns how many counts are larger than `value`, rounded to a bucket.
   std::int64_t count_above(std::int64_t value) const noexcept;
 
  private:

@@ -40,7 +40,7 @@ class Grip {
   void open() noexcept;
   bool holds() const { return !vertices_.empty(); }
   std::span<const int> vertices() const { return vertices_; }
-  /// From the tool centre to where each of them is held, m.
+  /// Returns the offset of each of them from the tool centre, m.
   std::span<const Vec3> offsets() const { return offsets_; }
   int max_vertices() const { return static_cast<int>(max_nodes_); }
 

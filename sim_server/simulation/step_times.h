@@ -32,7 +32,7 @@ struct StepTimes {
 /// thread; asks the clock twice a step.
 StepTimes time_steps(const Scene& scene, Simulation& simulation, std::span<const std::optional<Press>> sites,
                      int steps, const Progress& progress = kSilent, const ToolRequest& request = {});
-/// The same of the first tool alone.
+/// Times the steps of the first tool alone.
 StepTimes time_steps(const Scene& scene, Simulation& simulation, const Press& site, int steps,
                      const Progress& progress = kSilent, const ToolRequest& request = {});
 

@@ -40,7 +40,7 @@ Vec3 force_at(const Trace& reference, double t) {
 }
 
 /// Without force below `kContactForce`, as where contact only just ended.
-Vec3 felt(const Vec3& force) {
+Vec3 contact_force(const Vec3& force) {
   return force.norm() < kContactForce ? Vec3::Zero() : force;
 }
 
@@ -57,7 +57,7 @@ ErrorMetrics rendered_error(const Trace& trace, const Trace& reference, const Tr
       const std::size_t k = std::min(static_cast<std::size_t>(newest), trace.forces.size() - 1);
       force = trace.forces[k] + trace.tangents[k] * (motion.at(t) - trace.places[k]);
     }
-    error.add(felt(force), ReferenceForce(felt(force_at(reference, t)), from_seconds(t)));
+    error.add(contact_force(force), ReferenceForce(contact_force(force_at(reference, t)), from_seconds(t)));
   }
   return error.metrics();
 }
