@@ -164,8 +164,14 @@ bool ContactSolver::solve_on_active_set(const Eigen::Ref<const Eigen::VectorXd>&
 /// False where there are no such forces, or where they are those of a state that is not stable.
 bool ContactSolver::solve_newton_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
                                           Eigen::Ref<Eigen::VectorXd> force) noexcept {
-  if (path_.has_friction) return solve_contacts(gap, force);
-  return solve_on_active_set(gap, force) || (second_.system_sign > 0 && solve_contacts(gap, force));
+  if (!path_.has_friction) {
+    if (solve_on_active_set(gap, force)) return true;
+    if (second_.system_sign <= 0) return false;
+  }
+  const int rows = rows_of_contact();
+  for (Eigen::Index row = 0; row < gap.size(); ++row)
+    force[row] = lambda_[rows * second_.considered[static_cast<std::size_t>(row / rows)] + row % rows];
+  return solve_contacts(gap, force);
 }
 
 /// The contacts that a Newton step may close or open where the plain step moves things by `change` (m): those

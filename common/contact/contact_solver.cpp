@@ -284,11 +284,10 @@ void ContactSolver::solve(ContactPatch& patch, std::span<const TouchingTool> too
   collect_result(m, result, forces);
 }
 
-/// Forces in the rows of the contacts, on the Delassus operator as it stands.
+/// Forces in the rows of the contacts, on the Delassus operator as it stands. `force`: where to start.
 bool ContactSolver::solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
                                    Eigen::Ref<Eigen::VectorXd> force) noexcept {
   const auto delassus = delassus_.leftCols(gap.size());
-  recall(force);
   if (!path_.has_friction) return complementarity_.solve(delassus, gap, force);
   auto friction = friction_.head(gap.size() / 3);
   for (Eigen::Index k = 0; k < friction.size(); ++k) friction[k] = contacts_[k].friction;
@@ -329,6 +328,7 @@ void ContactSolver::recall(Eigen::Ref<Eigen::VectorXd> force) const noexcept {
 void ContactSolver::solve_linearised(const ContactPatch& patch, Eigen::Ref<Eigen::VectorXd> next) noexcept {
   const auto n = static_cast<Eigen::Index>(contacts_.size()) * rows_of_contact();
   auto lambda = lambda_.head(n);
+  recall(lambda);
   solve_contacts(gap_.head(n), lambda);
   store(lambda);
   auto load = node_force_.head(3 * patch.nodes());
