@@ -36,7 +36,7 @@ void ContactSolver::collect_nodes(int nodes) noexcept {
     second_.nodes.push_back(node);
   };
   for_each_node([&](int k, int node) {
-    if (lambda_[rows_of_contact() * k] != 0) second_.slot_of_node[node] = kLoaded;
+    if (lambda_[k] != 0) second_.slot_of_node[node] = kLoaded;
   });
   for_each_node([&](int, int node) {
     if (second_.slot_of_node[node] == kUnseen) add(node);
@@ -49,38 +49,46 @@ void ContactSolver::collect_nodes(int nodes) noexcept {
 }
 
 void ContactSolver::differentiate_contacts(int nodes) noexcept {
-  const int rows = rows_of_contact();
-  const auto n = rows * static_cast<Eigen::Index>(second_.considered.size()),
+  const auto n = static_cast<Eigen::Index>(second_.rows.size()),
+             contacts = static_cast<Eigen::Index>(second_.considered.size()),
              size = 3 * static_cast<Eigen::Index>(second_.nodes.size());
   second_.curvature.shape(size, size);
   second_.curvature.setZero();
-  second_.jacobian.shape(n, size);
+  second_.jacobian.shape(n + static_cast<Eigen::Index>(second_.friction_nodes.size()), size);
   second_.jacobian.setZero();
-  if (rows > 1) {
-    second_.spread.shape(size, n);
-    second_.spread.setZero();
+  for (Eigen::Index row = 0; row < n; ++row) {
+    const Contact& c = contact_of(second_.rows[static_cast<std::size_t>(row)]);
+    const Vec3 d = direction(second_.rows[static_cast<std::size_t>(row)]);
+    for (int i = 0; i < c.size; ++i)
+      second_.jacobian.block<1, 3>(row, 3 * second_.slot_of_node[c.node[i]]) = -c.weight[i] * d.transpose();
+    second_.jacobian.block<1, 3>(row, 3 * second_.slot_of_node[nodes + c.tool]) = c.at_tip(d).transpose();
   }
-  for (Eigen::Index row = 0; row < n; row += rows) {
-    const int k = second_.considered[static_cast<std::size_t>(row / rows)];
+  const bool friction = n > contacts;
+  if (friction) {
+    second_.spread.shape(size, n);
+    second_.spread = second_.jacobian.topRows(n).transpose();
+    second_.turning.shape(n, contacts);
+    second_.turning.setZero();
+  }
+  for (Eigen::Index row = 0; row < contacts; ++row) {
+    const int k = second_.considered[static_cast<std::size_t>(row)];
     const Contact& c = contacts_[k];
     std::array<Vec3, 3> x;
     std::array<int, 4> slot;
     for (int i = 0; i < c.size; ++i) {
       x[i] = deformed_[c.node[i]];
       slot[i] = second_.slot_of_node[c.node[i]];
-      second_.jacobian.block<1, 3>(row, 3 * slot[i]) = -c.weight[i] * c.normal.transpose();
     }
     slot[c.size] = second_.slot_of_node[nodes + c.tool];
-    second_.jacobian.block<1, 3>(row, 3 * slot[c.size]) = c.at_tip(c.normal).transpose();
-    if (rows > 1) {
-      differentiate_friction(k, row, {slot.data(), static_cast<std::size_t>(c.size) + 1});
-      continue;
-    }
     const double force = lambda_[k];
-    if (force == 0) continue;
-    const SimplexHessian h =
-        hessian_of(c, path_.tools[c.tool].pivots, {x.data(), static_cast<std::size_t>(c.size)}, nullptr);
-    for (int i = 0; i <= c.size; ++i) {
+    WeightGradient weights;
+    SimplexHessian h;
+    if (force != 0)
+      h = hessian_of(c, path_.tools[c.tool].pivots, {x.data(), static_cast<std::size_t>(c.size)},
+                     friction ? &weights : nullptr);
+    if (friction && c.friction > 0)
+      differentiate_friction(static_cast<int>(row), force != 0 ? &h : nullptr, weights, slot);
+    for (int i = 0; force != 0 && i <= c.size; ++i) {
       for (int j = 0; j <= c.size; ++j) {
         second_.curvature.block<3, 3>(3 * slot[i], 3 * slot[j]) += force * h.block<3, 3>(3 * i, 3 * j);
       }
@@ -88,47 +96,46 @@ void ContactSolver::differentiate_contacts(int nodes) noexcept {
   }
 }
 
-/// What a contact with friction adds to A, to the rows of B across the normal, and to S. `slot`: of its
-/// nodes, then of the tip.
-void ContactSolver::differentiate_friction(int contact, Eigen::Index row,
+/// How what a contact presses on the nodes of its friction changes as its point moves over the surface, and
+/// with its force: of B the rows of those places, and below those of all forces the ones of what presses
+/// there, of A its own column, and S. `slot`: of its nodes, then of the tip. With N = sum of w lambda n on a
+/// node, that changes by
+///   d|N| = N . dN / |N|,   d(N / |N|) = (1 - n n^T) dN / |N|,   dN = sum of w n dlambda + lambda d(w n),
+/// where d lambda = lambda turns nothing.
+void ContactSolver::differentiate_friction(int considered, const SimplexHessian* h,
+                                           const WeightGradient& weights,
                                            std::span<const int> slot) noexcept {
-  const Contact& c = contacts_[contact];
-  const Mat3& frame = frames_[contact];
-  std::array<Vec3, 3> x, moved;
-  for (int i = 0; i < c.size; ++i) {
-    x[i] = deformed_[c.node[i]];
-    moved[i] = x[i] - path_.was[c.node[i]];
-  }
-  WeightGradient weights;
-  const SimplexHessian h =
-      hessian_of(c, path_.tools[c.tool].pivots, {x.data(), static_cast<std::size_t>(c.size)}, &weights);
-  // dn, as d gap / dx_i = -b_i n and the b_i sum to one.
-  Eigen::Matrix<double, 3, 12> turn = Eigen::Matrix<double, 3, 12>::Zero();
-  for (int i = 0; i < c.size; ++i) turn -= h.middleRows<3>(3 * i);
-  Mat3 lever;  // M^T, where the tip's motion moves the tool at the contact by M
-  for (int axis = 0; axis < 3; ++axis) lever.col(axis) = c.at_tip(Vec3::Unit(axis));
-  const Vec3 force = frame * lambda_.segment<3>(3 * contact);
-  // d travel - (normal . travel) dn, without what the nodes and the tip themselves do; and d force.
-  Eigen::Matrix<double, 3, 12> slip = -c.normal.dot(travel(c)) * turn, bend;
-  for (int i = 0; i < c.size; ++i) slip -= moved[i] * weights.row(i);
-  bend =
-      lambda_[3 * contact] * turn - c.normal * ((force - lambda_[3 * contact] * c.normal).transpose() * turn);
-  for (int j = 0; j <= c.size; ++j) {
-    // M is symmetric.
-    const Mat3 fraction = j == c.size ? lever : Mat3(-c.weight[j] * Mat3::Identity());
-    const int at = 3 * slot[j];
-    second_.spread.block<3, 3>(at, row) = fraction * frame;
-    second_.jacobian.block<2, 3>(row + 1, at) =
-        frame.rightCols<2>().transpose() * (fraction + slip.middleCols<3>(3 * j));
-    for (int i = 0; i <= c.size; ++i) {
-      Mat3 block = bend.middleCols<3>(3 * j);
-      if (i == c.size) {
-        block = lever * block;
-      } else {
-        block *= -c.weight[i];
-      }
-      if (i < c.size) block -= force * weights.row(i).segment<3>(3 * j);
-      second_.curvature.block<3, 3>(3 * slot[i], at) += block;
+  const int k = second_.considered[considered];
+  const Contact& c = contacts_[k];
+  const auto all = static_cast<Eigen::Index>(contacts_.size()),
+             contacts = static_cast<Eigen::Index>(second_.considered.size()),
+             n = static_cast<Eigen::Index>(second_.rows.size());
+  for (const FrictionPlaces::Share& s : second_.shares) {
+    if (s.contact != considered) continue;
+    const int node = second_.friction_nodes[s.place];
+    const double pressing = friction_nodes_.pressing[node];
+    if (!(pressing > 0)) continue;
+    const Contact& place = friction_nodes_.places[node];
+    const auto across = friction_nodes_.frames[node].rightCols<2>();
+    const auto corner = std::ranges::find(c.node, place.node[0]) - c.node.begin();
+    const Eigen::Index row = contacts + 2 * s.place, place_row = all + 2 * node;
+    const Eigen::Vector2d force = lambda_.segment<2>(place_row),
+                          turn = c.weight[corner] / pressing * (across.transpose() * c.normal);
+    const double passed = place.normal.dot(travel(place_row));
+    const Vec3 tip = place.at_tip(place.normal);
+    second_.turning.block<2, 1>(row, considered) = -passed * turn;
+    second_.spread.block<3, 1>(3 * slot[corner], considered) += force.dot(turn) * place.normal;
+    second_.spread.block<3, 1>(3 * slot[c.size], considered) -= force.dot(turn) * tip;
+    for (int j = 0; h != nullptr && j <= c.size; ++j) {
+      Mat3 change = lambda_[k] * c.normal * weights.block<1, 3>(corner, 3 * j);
+      for (int i = 0; i < c.size; ++i)  // dn, as d gap / dx_i = -b_i n and the b_i sum to one
+        change -= lambda_[k] * c.weight[corner] * h->block<3, 3>(3 * i, 3 * j);
+      const Eigen::Matrix<double, 2, 3> turns = across.transpose() * change / pressing;
+      second_.jacobian.block<2, 3>(row, 3 * slot[j]) -= passed * turns;
+      second_.jacobian.block<1, 3>(n + s.place, 3 * slot[j]) += place.normal.transpose() * change;
+      second_.curvature.block<3, 3>(3 * slot[corner], 3 * slot[j]) +=
+          place.normal * (force.transpose() * turns);
+      second_.curvature.block<3, 3>(3 * slot[c.size], 3 * slot[j]) -= tip * (force.transpose() * turns);
     }
   }
 }

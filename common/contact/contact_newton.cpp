@@ -13,13 +13,19 @@
 
 namespace palpate {
 namespace {
-constexpr double kNearby = 2;  // of what moves: a gap that wide is not closed
+// Of what moves: a gap that wide is not closed; nor, after Newton's step, which leaves less.
+constexpr double kNearby = 2, kNearbyNewton = 0.5;
 }  // namespace
 
-/// Calls `visit` with the place among the nodes considered of each node of a contact, then of the tip.
+/// Calls `visit` with the place among the nodes considered of each node that a row may not be zero for, and
+/// of the tip: those of a contact are its own.
 template <class Visit>
-void ContactSolver::each_slot(Eigen::Index contact, const Visit& visit) const {
-  const Contact& c = contacts_[second_.considered[static_cast<std::size_t>(contact)]];
+void ContactSolver::each_slot(Eigen::Index row, const Visit& visit) const {
+  if (row >= static_cast<Eigen::Index>(second_.considered.size())) {
+    for (int slot = 0; slot < static_cast<int>(second_.nodes.size()); ++slot) visit(slot);
+    return;
+  }
+  const Contact& c = contacts_[second_.considered[static_cast<std::size_t>(row)]];
   for (int i = 0; i < c.size; ++i) visit(second_.slot_of_node[c.node[i]]);
   visit(static_cast<int>(tip_of(c.tool)));
 }
@@ -58,17 +64,37 @@ void ContactSolver::assemble_system(const ContactPatch& patch) noexcept {
   });
 }
 
-/// C of the forces of the contacts, or of their gaps (C B^T), over the rows from `first` on.
+/// C A, or C B^T, column by column, over the rows from `first` on.
 void ContactSolver::spread_over(Eigen::Index first, bool forces,
                                 Eigen::Ref<Eigen::MatrixXd> moved) const noexcept {
-  const int rows = rows_of_contact();
+  const bool by_spread = forces && !second_.friction_nodes.empty();
   moved.setZero();
-  for (Eigen::Index row = 0; row < moved.cols(); ++row) {
-    each_slot(row / rows, [&](int slot) {
-      const Vec3 load = forces && rows > 1 ? Vec3(second_.spread.block<3, 1>(3 * slot, row))
-                                           : Vec3(second_.jacobian.block<1, 3>(row, 3 * slot).transpose());
-      moved.col(row) += second_.compliance.block(first, 3 * slot, moved.rows(), 3).lazyProduct(load);
+  for (Eigen::Index column = 0; column < moved.cols(); ++column) {
+    each_slot(column, [&](int slot) {
+      const Vec3 load = by_spread ? Vec3(second_.spread.block<3, 1>(3 * slot, column))
+                                  : Vec3(second_.jacobian.block<1, 3>(column, 3 * slot).transpose());
+      if (load.isZero(0)) return;
+      moved.col(column) += second_.compliance.block(first, 3 * slot, moved.rows(), 3).lazyProduct(load);
     });
+  }
+}
+
+/// Rows of B of the columns of `response_`.
+void ContactSolver::find_gap_changes(Eigen::Index from, Eigen::Index to) noexcept {
+  for (Eigen::Index row = from; row < to; ++row) {
+    second_.gap_changes.clear();
+    each_slot(row, [&](int slot) {
+      const Vec3 by = second_.jacobian.block<1, 3>(row, 3 * slot).transpose();
+      if (!by.isZero(0)) second_.gap_changes.push_back({3 * slot, by});
+    });
+    for (Eigen::Index column = 0; column < delassus_.cols(); ++column) {
+      const auto moved = response_.col(column);
+      double change = 0;
+      for (const GapChange& entry : second_.gap_changes)
+        change += entry.by[0] * moved[entry.at] +
+                  (entry.by[1] * moved[entry.at + 1] + entry.by[2] * moved[entry.at + 2]);
+      delassus_(row, column) = change;
+    }
   }
 }
 
@@ -79,30 +105,23 @@ bool ContactSolver::respond(const ContactPatch& patch,
                             const Eigen::Ref<const Eigen::MatrixXd>& loads) noexcept {
   const auto unknowns =
                  3.0 * static_cast<double>(second_.nodes.size() - static_cast<std::size_t>(second_.unloaded)),
-             right = static_cast<double>(second_.considered.size()) * rows_of_contact() + 3;
+             right = static_cast<double>(second_.rows.size()) + 3;
   if (!work_.spend(unknowns * unknowns * (unknowns / 3 + right + 30))) return false;
   assemble_system(patch);
-  const int rows = rows_of_contact();
-  const auto n = rows * static_cast<Eigen::Index>(second_.considered.size()), size = loads.rows();
+  const auto n = static_cast<Eigen::Index>(second_.rows.size()), size = loads.rows(),
+             rows = second_.jacobian.rows();
   const Eigen::Index first = 3 * second_.unloaded, loaded = size - first, columns = n + loads.cols();
   response_.shape(size, columns);
   spread_over(0, true, response_.leftCols(n));
   response_.rightCols(loads.cols()).noalias() = second_.compliance * loads;
-  delassus_.shape(n, columns);
-  delassus_.setZero();
-  for (Eigen::Index column = 0; column < columns; ++column) {
-    for (Eigen::Index row = 0; row < n; ++row) {
-      each_slot(row / rows, [&](int slot) {
-        delassus_(row, column) +=
-            second_.jacobian.block<1, 3>(row, 3 * slot).dot(response_.col(column).segment<3>(3 * slot));
-      });
-    }
-  }
-  second_.toward.shape(loaded, n);  // C B^T
-  if (rows > 1) {
-    spread_over(first, false, second_.toward);
+  const auto contacts = static_cast<Eigen::Index>(second_.considered.size());
+  delassus_.shape(rows, columns);
+  find_gap_changes(0, contacts);
+  second_.toward.shape(loaded, contacts);  // C B^T: so the rows of contacts stay symmetric
+  if (rows == contacts) {
+    second_.toward = response_.bottomLeftCorner(loaded, contacts);
   } else {
-    second_.toward = response_.bottomLeftCorner(loaded, n);
+    spread_over(first, false, second_.toward);
   }
   auto at_loads = response_.bottomRows(loaded);
   second_.system_sign = gauss_solve(second_.system, at_loads);
@@ -112,9 +131,14 @@ bool ContactSolver::respond(const ContactPatch& patch,
   each_block_of_curvature([&](Eigen::Index i, Eigen::Index j, const Mat3& block) {
     second_.bent.middleRows<3>(i - first) += block.lazyProduct(at_loads.middleRows<3>(j - first));
   });
-  delassus_.noalias() += second_.toward.transpose() * second_.bent;
+  delassus_.topRows(contacts).noalias() += second_.toward.transpose() * second_.bent;
+  if (rows > contacts) {
+    response_.topRows(first).noalias() += second_.compliance.topRightCorner(first, loaded) * second_.bent;
+    find_gap_changes(contacts, rows);
+    delassus_.topLeftCorner(n, contacts) += second_.turning;
+  }
   for (Eigen::Index row = 0; row < n; ++row)
-    delassus_(row, row) += row % rows == 0 ? contact_compliance_ : friction_compliance_;
+    delassus_(row, row) += row < contacts ? contact_compliance_ : friction_compliance_;
   return true;
 }
 
@@ -164,18 +188,16 @@ bool ContactSolver::solve_on_active_set(const Eigen::Ref<const Eigen::VectorXd>&
 /// False where there are no such forces, or where they are those of a state that is not stable.
 bool ContactSolver::solve_newton_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
                                           Eigen::Ref<Eigen::VectorXd> force) noexcept {
-  if (!path_.has_friction) {
-    if (solve_on_active_set(gap, force)) return true;
-    if (second_.system_sign <= 0) return false;
-  }
-  const int rows = rows_of_contact();
-  for (Eigen::Index row = 0; row < gap.size(); ++row)
-    force[row] = lambda_[rows * second_.considered[static_cast<std::size_t>(row / rows)] + row % rows];
-  return solve_contacts(gap, force);
+  const bool friction = !second_.friction_nodes.empty();
+  if (!friction && solve_on_active_set(gap, force)) return true;
+  if (!friction && second_.system_sign <= 0) return false;
+  for (Eigen::Index row = 0; row < force.size(); ++row)
+    force[row] = lambda_[second_.rows[static_cast<std::size_t>(row)]];
+  return solve_contacts(gap, force, friction);
 }
 
-/// The contacts that a Newton step may close or open where the plain step moves things by `change` (m): those
-/// with a force, and those whose gap it leaves small. With friction all.
+/// The contacts that a Newton step may close or open where things move by `change` (m): those with a force,
+/// and those whose gap is small; without friction, that which the plain step leaves.
 void ContactSolver::consider_near(double change) noexcept {
   second_.considered.clear();
   const auto n = static_cast<Eigen::Index>(contacts_.size());
@@ -185,8 +207,12 @@ void ContactSolver::consider_near(double change) noexcept {
     slack.noalias() += delassus_ * lambda_.head(n);
   }
   for (int k = 0; k < n; ++k) {
-    if (path_.has_friction || lambda_[k] > 0 || slack_[k] < kNearby * change) second_.considered.push_back(k);
+    const bool near = path_.has_friction ? lambda_[k] > 0 || contacts_[k].distance - contacts_[k].radius <
+                                                                 kNearbyNewton * change
+                                         : lambda_[k] > 0 || slack_[k] < kNearby * change;
+    if (near) second_.considered.push_back(k);
   }
+  consider();
 }
 
 bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u,
@@ -194,7 +220,7 @@ bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<cons
   consider_near(change);
   if (second_.considered.empty()) return false;
   if (!differentiate_considered(patch)) return false;
-  const auto n = rows_of_contact() * static_cast<Eigen::Index>(second_.considered.size()),
+  const auto n = static_cast<Eigen::Index>(second_.rows.size()),
              size = 3 * static_cast<Eigen::Index>(second_.nodes.size());
   const Eigen::Index loaded = size - 3 * second_.unloaded;
   auto local = second_.moved.col(0).head(size), load = second_.moved.col(1).head(size);
@@ -203,30 +229,29 @@ bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<cons
   }
   load.noalias() = second_.curvature * local;
   if (!respond(patch, load)) return false;
-  auto gap = second_.rhs.col(0).head(n), lambda = second_.rhs.col(1).head(n);
-  for (Eigen::Index row = 0; row < n; ++row) {  // w - A^T u, which `gap_` holds
-    const int rows = rows_of_contact(), k = second_.considered[static_cast<std::size_t>(row / rows)];
-    gap[row] = gap_[rows * k + row % rows];
-  }
+  auto gap = second_.rhs.col(0).head(second_.jacobian.rows()), lambda = second_.rhs.col(1).head(n);
+  gap.tail(gap.size() - n).setZero();
+  for (Eigen::Index row = 0; row < n; ++row)  // w - A^T u, which `gap_` holds
+    gap[row] = gap_[second_.rows[static_cast<std::size_t>(row)]];
   gap -= delassus_.col(n);  // B C~ S u
-  if (path_.has_friction) {
-    gap.noalias() += second_.spread.transpose() * local;
-    gap.noalias() -= second_.jacobian * local;
+  if (!second_.friction_nodes.empty()) {
+    const auto contacts = static_cast<Eigen::Index>(second_.considered.size());
+    for (Eigen::Index row = contacts; row < n; ++row)
+      gap[row] += along(second_.rows[static_cast<std::size_t>(row)], patch.nodes(), u);
+    gap.tail(gap.size() - contacts).noalias() -= second_.jacobian.bottomRows(gap.size() - contacts) * local;
   }
   if (!solve_newton_contacts(gap, lambda)) return false;
-  auto forces = lambda_.head(rows_of_contact() * static_cast<Eigen::Index>(contacts_.size()));
+  auto forces = lambda_.head(rows());
   forces.setZero();
-  for (Eigen::Index row = 0; row < n; ++row) {
-    const int rows = rows_of_contact(), k = second_.considered[static_cast<std::size_t>(row / rows)];
-    forces[rows * k + row % rows] = lambda[row];
-  }
+  for (Eigen::Index row = 0; row < n; ++row)
+    forces[second_.rows[static_cast<std::size_t>(row)]] = lambda[row];
   store(forces);
   // Force at the new geometry, to first order: A z+ + S (u+ - u).
   auto moved = second_.moved.col(2).head(loaded);  // u+ - u of the loaded nodes
   moved = -response_.col(n).tail(loaded) - local.tail(loaded);
   moved.noalias() += response_.bottomLeftCorner(loaded, n) * lambda;
   load.noalias() = second_.curvature.rightCols(loaded) * moved;
-  if (path_.has_friction) {
+  if (!second_.friction_nodes.empty()) {
     load.noalias() += second_.spread * lambda;
   } else {
     load.noalias() += second_.jacobian.transpose() * lambda;
@@ -243,53 +268,52 @@ bool ContactSolver::newton_step(const ContactPatch& patch, const Eigen::Ref<cons
 /// Contact forces that follow where gaps and slips are about to change by `change`, which they overwrite.
 bool ContactSolver::differentiate_forces(
     Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> change) noexcept {
-  const auto n = change.rows();
-  if (!path_.has_friction) {
+  const auto n = static_cast<Eigen::Index>(second_.rows.size());
+  if (second_.friction_nodes.empty()) {
     change = -change;
     return gauss_solve(delassus_.leftCols(n), change) != 0;
   }
   auto force = gap_.head(n), slack = slack_.head(n);
-  for (Eigen::Index i = 0; i < n; i += 3) {
-    const int k = second_.considered[static_cast<std::size_t>(i / 3)];
-    force.segment<3>(i) = lambda_.segment<3>(3 * k);
-    slack.segment<3>(i) = friction_compliance_ * force.segment<3>(i);
-    slack.segment<2>(i + 1) += frames_[k].rightCols<2>().transpose() * travel(contacts_[k]);
-    slack[i] = 0;
+  for (Eigen::Index i = 0; i < n; ++i) force[i] = lambda_[second_.rows[static_cast<std::size_t>(i)]];
+  const auto contacts = static_cast<Eigen::Index>(second_.considered.size());
+  slack.head(contacts).setZero();
+  for (Eigen::Index i = contacts; i < n; ++i) {
+    const int row = second_.rows[static_cast<std::size_t>(i)];
+    slack[i] = friction_compliance_ * force[i] + direction(row).dot(travel(row));
   }
-  auto friction = friction_.head(n / 3);
-  for (Eigen::Index k = 0; k < friction.size(); ++k)
-    friction[k] = contacts_[second_.considered[static_cast<std::size_t>(k)]].friction;
-  return coulomb_.differentiate(delassus_.leftCols(n), force, slack, friction, change);
+  return coulomb_.differentiate(delassus_.leftCols(n), force, slack, friction_considered(), change);
 }
 
 Mat3 ContactSolver::tangent(const ContactPatch& patch, int tool) noexcept {
   second_.has_load_change = false;
   second_.considered.clear();
   for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
-    if (contacts_[k].tool == tool && lambda_[rows_of_contact() * k] > 0) second_.considered.push_back(k);
+    if (contacts_[k].tool == tool && lambda_[k] > 0) second_.considered.push_back(k);
   }
+  consider();
   if (second_.considered.empty()) return Mat3::Zero();
   const Mat3 k = tangent_of_considered(patch, tool);
   if (!k.allFinite()) return Mat3::Zero();
-  second_.has_load_change = !path_.has_friction && !k.isZero(0);
-  return path_.has_friction ? k : Mat3(0.5 * (k + k.transpose()));
+  second_.has_load_change = second_.friction_nodes.empty() && !k.isZero(0);
+  return !second_.friction_nodes.empty() ? k : Mat3(0.5 * (k + k.transpose()));
 }
 
 Mat3 ContactSolver::tangent_of_considered(const ContactPatch& patch, int tool) noexcept {
   if (!differentiate_considered(patch)) return Mat3::Zero();
-  const auto n = rows_of_contact() * static_cast<Eigen::Index>(second_.considered.size()),
+  const auto n = static_cast<Eigen::Index>(second_.rows.size()),
              size = 3 * static_cast<Eigen::Index>(second_.nodes.size());
   auto moved = second_.moved.topRows(size);  // E + C~ S E: how the geometry follows the tool at fixed forces
   if (!respond(patch, second_.curvature.middleCols<3>(3 * tip_of(tool)))) return Mat3::Zero();
   moved = response_.rightCols<3>();
   moved.middleRows<3>(3 * tip_of(tool)) += Mat3::Identity();
-  auto force_change = second_.rhs.topRows(n);
-  force_change.noalias() = second_.jacobian * moved;
-  if (!differentiate_forces(force_change)) return Mat3::Zero();
+  auto change = second_.rhs.topRows(second_.jacobian.rows());
+  change.noalias() = second_.jacobian * moved;
+  if (!differentiate_forces(change)) return Mat3::Zero();
+  const auto force_change = change.topRows(n);
   moved.noalias() += response_.leftCols(n) * force_change;
   auto loads = second_.load_change.topRows(size);
   loads.noalias() = second_.curvature * moved;
-  if (path_.has_friction) {
+  if (!second_.friction_nodes.empty()) {
     loads.noalias() += second_.spread * force_change;
   } else {
     loads.noalias() += second_.jacobian.transpose() * force_change;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <numeric>
 
 namespace palpate {
 namespace {
@@ -13,16 +14,8 @@ constexpr double kTouching = 0.5;
 constexpr int kFewest = 96;  // never fewer nodes, or contacts: those of a client's patch (`ContactOnPatch`)
 // How far beyond the radius features are considered: a multiple of what moved last, within fractions of the
 // radius.
+constexpr double kInexact = 1e-2;  // of what the conditions of friction lack, remains for the next iteration
 constexpr double kMargin = 4, kMinReach = 1e-3, kMaxReach = 0.05;
-
-/// Displacement difference tip minus surface along a direction: a row of W u.
-double along(const Contact& c, const Vec3& direction, Eigen::Index tip,
-             const Eigen::Ref<const Eigen::VectorXd>& u) {
-  Vec3 relative = u.segment<3>(3 * tip);
-  for (int i = 0; i < c.size; ++i) relative -= c.weight[i] * u.segment<3>(3 * c.node[i]);
-  if (c.fraction == 1) return direction.dot(relative);
-  return direction.dot(relative) + (c.at_tip(direction) - direction).dot(u.segment<3>(3 * tip));
-}
 
 /// Where the nodes are, displaced by `u`, in `places`, which has room for them.
 void deform(std::span<const Vec3> free, const Eigen::Ref<const Eigen::VectorXd>& u,
@@ -80,20 +73,21 @@ void ContactPatch::require(int node) noexcept {
 }
 
 ContactSolver::ContactSolver(int max_nodes, int max_triangles, bool friction, int tools)
-    : complementarity_(max_triangles), coulomb_(friction ? max_triangles : 0) {
+    : complementarity_(max_triangles), coulomb_(friction ? max_triangles : 0, friction ? max_nodes : 0) {
   second_.slot_of_node.resize(static_cast<std::size_t>(max_nodes + tools));
-  const int unknowns = 3 * (max_nodes + tools), per_contact = friction ? 3 : 1,
-            rows = per_contact * max_triangles;
+  const int unknowns = 3 * (max_nodes + tools), across_rows = friction ? 2 : 0,
+            rows = max_triangles + across_rows * max_nodes;
   most_nodes_ = std::min(max_nodes, std::max(kFewest, static_cast<int>(kTouching * max_nodes)));
   most_contacts_ = std::min(max_triangles, std::max(kFewest, static_cast<int>(kTouching * max_triangles)));
-  const int touching = 3 * (most_nodes_ + tools), touched = per_contact * most_contacts_;
+  const int touching = 3 * (most_nodes_ + tools), touched = most_contacts_ + across_rows * most_nodes_;
   for (BoundedMatrix* square : {&second_.curvature, &second_.compliance, &second_.system})
     square->reserve(touching, touching);
   for (BoundedMatrix* tall : {&response_, &second_.bent, &second_.toward})
-    tall->reserve(touching, touched + 3);
-  second_.jacobian.reserve(touched, touching);
+    tall->reserve(touching, touched + across_rows / 2 * most_nodes_ + 3);
+  second_.jacobian.reserve(touched + across_rows / 2 * most_nodes_, touching);
   if (friction) second_.spread.reserve(touching, touched);
-  delassus_.reserve(rows, rows + 3);
+  if (friction) second_.turning.reserve(touched, most_contacts_);
+  delassus_.reserve(rows + across_rows / 2 * max_nodes, rows + 3);
   gap_.resize(rows);
   lambda_.resize(rows);
   next_.resize(unknowns);
@@ -101,23 +95,38 @@ ContactSolver::ContactSolver(int max_nodes, int max_triangles, bool friction, in
   node_force_.resize(3 * max_nodes);
   second_.moved.resize(unknowns, 3);
   second_.load_change.resize(unknowns, 3);
-  second_.rhs.resize(rows, 3);
+  second_.rhs.resize(rows + across_rows / 2 * max_nodes, 3);
   contacts_.reserve(static_cast<std::size_t>(max_triangles));
   second_.considered.reserve(static_cast<std::size_t>(max_triangles));
+  second_.gap_changes.reserve(static_cast<std::size_t>(max_nodes + tools));
+  second_.rows.reserve(static_cast<std::size_t>(rows));
   second_.active.reserve(static_cast<std::size_t>(max_triangles));
   deformed_.reserve(static_cast<std::size_t>(max_nodes));
   second_.nodes.reserve(static_cast<std::size_t>(max_nodes + tools));
   path_.tools.reserve(static_cast<std::size_t>(tools));
   slack_.resize(rows);
-  rendered_.reserve(static_cast<std::size_t>(max_triangles));
+  rendered_.reserve(static_cast<std::size_t>(rows));
   if (!friction) return;
-  frames_.reserve(static_cast<std::size_t>(max_triangles));
-  path_.was.reserve(static_cast<std::size_t>(max_nodes));
-  friction_.resize(max_triangles);
+  const auto nodes = static_cast<std::size_t>(max_nodes);
+  path_.was.reserve(nodes);
+  friction_nodes_.places.reserve(nodes);
+  friction_nodes_.frames.reserve(nodes);
+  second_.friction_nodes.reserve(nodes);
+  friction_nodes_.pressing.reserve(nodes);
+  second_.mu.reserve(nodes);
+  for (auto* shares : {&friction_nodes_.shares, &second_.shares}) shares->reserve(3 * contacts_.capacity());
+  friction_nodes_.at_node.assign(nodes * static_cast<std::size_t>(tools), -1);
 }
 
-Vec3 ContactSolver::direction(int contact, int row) const {
-  return row == 0 ? contacts_[contact].normal : Vec3(frames_[contact].col(row));
+const Contact& ContactSolver::contact_of(Eigen::Index row) const {
+  const auto k = static_cast<std::size_t>(row), n = contacts_.size();
+  return k < n ? contacts_[k] : friction_nodes_.places[(k - n) / 2];
+}
+
+Vec3 ContactSolver::direction(Eigen::Index row) const {
+  const auto k = static_cast<std::size_t>(row), n = contacts_.size();
+  return k < n ? contacts_[k].normal
+               : Vec3(friction_nodes_.frames[(k - n) / 2].col(1 + (row - static_cast<int>(n)) % 2));
 }
 
 double ContactSolver::contact_compliance(double mean) noexcept {
@@ -129,12 +138,33 @@ double ContactSolver::contact_compliance(const ContactPatch& patch, int nodes) n
   return contact_compliance(patch.compliance.diagonal().head(3 * nodes).mean() + patch.tool_compliance);
 }
 
-/// How far the tip went over the surface at a contact in this increment.
-Vec3 ContactSolver::travel(const Contact& c) const {
+/// Displacement difference tip minus surface of a row: W u.
+double ContactSolver::along(Eigen::Index row, Eigen::Index nodes,
+                            const Eigen::Ref<const Eigen::VectorXd>& u) const {
+  const Contact& c = contact_of(row);
+  const Vec3 d = direction(row), tip = u.segment<3>(3 * (nodes + c.tool));
+  Vec3 relative = tip;
+  for (int i = 0; i < c.size; ++i) relative -= c.weight[i] * u.segment<3>(3 * c.node[i]);
+  if (c.fraction == 1) return d.dot(relative);
+  return d.dot(relative) + (c.at_tip(d) - d).dot(tip);
+}
+
+/// How far the tip went over the surface at the place of a row in this increment.
+Vec3 ContactSolver::travel(Eigen::Index row) const {
+  const Contact& c = contact_of(row);
   const MovedTool& tool = path_.tools[c.tool];
   Vec3 travel = c.at_tip(tool.tip - tool.tip_was) + tool.turned * c.arm;
   for (int i = 0; i < c.size; ++i) travel -= c.weight[i] * (deformed_[c.node[i]] - path_.was[c.node[i]]);
   return travel;
+}
+
+/// The vertices of a contact's feature, ascending; -1, where it is no face.
+std::array<int, 3> ContactSolver::vertices_of(const Contact& c) const {
+  std::array<int, 3> vertices = c.node;
+  if (path_.vertices.empty()) return vertices;
+  for (int i = 0; i < c.size; ++i) vertices[i] = path_.vertices[c.node[i]];
+  std::ranges::sort(vertices);
+  return vertices;
 }
 
 /// The place of a tool's tip among the nodes considered.
@@ -144,7 +174,8 @@ Eigen::Index ContactSolver::tip_of(int tool) const {
 
 void ContactSolver::start_increment(const ContactPatch& patch, std::span<const TouchingTool> tools) noexcept {
   path_.has_friction = std::ranges::any_of(tools, [](const TouchingTool& t) { return t.tool->friction > 0; });
-  rendered_.clear();  // whose nodes are those of another patch
+  rendered_.assign(tools.front().start.forces.begin(), tools.front().start.forces.end());
+  path_.vertices = patch.vertices;
   path_.tools.clear();
   for (const TouchingTool& t : tools) {
     MovedTool& increment = path_.tools.emplace_back();
@@ -180,48 +211,110 @@ void ContactSolver::find_contacts(std::span<const TouchingTool> tools,
   }
 }
 
-/// Gaps, and slips, of the contacts as they would be without forces; and the Delassus operator.
-void ContactSolver::linearise(ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u) noexcept {
-  const int m = patch.nodes(), n = static_cast<int>(contacts_.size()), rows = rows_of_contact();
-  frames_.clear();
-  for (int k = 0; k < n; ++k) {
+/// Finds where friction acts, and how the contacts press there.
+void ContactSolver::find_friction_nodes(const ContactPatch& patch) noexcept {
+  FrictionNodes& f = friction_nodes_;
+  f.places.clear();
+  f.shares.clear();
+  if (!path_.has_friction || contacts_.empty()) return;
+  const auto slot_of = [&](int tool, int node) {
+    return static_cast<std::size_t>(tool * patch.nodes() + node);
+  };
+  for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
     const Contact& c = contacts_[k];
-    if (rows > 1) {
-      const Vec3 across = c.normal.unitOrthogonal();
-      frames_.emplace_back() << c.normal, across, c.normal.cross(across);
-    }
-    for (int i = 0; i < c.size; ++i) patch.require(c.node[i]);
-    for (int row = 0; row < rows; ++row) {
-      const Vec3 d = direction(k, row);
-      const double now = row == 0 ? c.distance - c.radius : d.dot(travel(c));
-      gap_[rows * k + row] = now - along(c, d, m + c.tool, u);
+    for (int i = 0; c.friction > 0 && i < c.size; ++i) {
+      int& place = f.at_node[slot_of(c.tool, c.node[i])];
+      if (place < 0) {
+        place = static_cast<int>(f.places.size());
+        f.places.push_back(c);
+        f.places.back().node = {c.node[i], -1, -1};
+      }
+      f.shares.push_back({k, place, c.weight[i]});
     }
   }
-  assemble_delassus(patch);
+  for (const Contact& c : f.places) f.at_node[slot_of(c.tool, c.node[0])] = -1;
+  auto force = lambda_.head(static_cast<Eigen::Index>(contacts_.size()));
+  recall(force);
+  average_contacts(force);
+}
+
+/// Gives each place of friction the means of its contacts, by what they press on its node: or by their shares
+/// of it, where nothing presses yet.
+void ContactSolver::average_contacts(const Eigen::Ref<const Eigen::VectorXd>& force) noexcept {
+  constexpr double kLeast = 1e-14;  // of the largest force: rounding
+  // Of it too: what presses less has no derivative that holds for as far as a Newton step goes.
+  constexpr double kFaint = 1e-3;
+  const double largest = force.maxCoeff(), least = largest > 0 ? kLeast * largest : 1;
+  FrictionNodes& f = friction_nodes_;
+  f.pressing.assign(f.places.size(), 0);
+  for (Contact& place : f.places) {
+    place.part = Contact::kTip;
+    place.size = 1;
+    place.weight = {1, 0, 0};
+    place.normal.setZero();
+    place.arm.setZero();
+    place.fraction = 1;
+  }
+  for (const FrictionPlaces::Share& s : f.shares) {
+    const Contact& c = contacts_[s.contact];
+    Contact& place = f.places[s.place];
+    double& total = f.pressing[s.place];
+    const double presses = s.share * (force[s.contact] + least);
+    total += presses;
+    if (total == 0) continue;
+    place.normal += presses * c.normal;
+    place.arm += presses / total * (c.arm - place.arm);
+    place.fraction += presses / total * (c.fraction - place.fraction);
+    if (c.fraction != 1) place.axis = c.axis;
+  }
+  f.frames.clear();
+  for (std::size_t i = 0; i < f.places.size(); ++i) {
+    Vec3& normal = f.places[i].normal;
+    const double pressing = normal.norm();
+    f.pressing[i] = pressing > kFaint * largest && largest > 0 ? pressing : 0;
+    normal = pressing > 0 ? Vec3(normal / pressing) : Vec3::UnitX();
+    const Vec3 across = normal.unitOrthogonal();
+    f.frames.emplace_back() << normal, across, normal.cross(across);
+  }
+  for (FrictionPlaces::Share& s : f.shares)
+    s.share *= std::max(0.0, f.places[s.place].normal.dot(contacts_[s.contact].normal));
+}
+
+/// Gaps, and slips, of the contacts as they would be without forces.
+void ContactSolver::linearise(ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u) noexcept {
+  const auto n = static_cast<Eigen::Index>(contacts_.size());
+  for (const Contact& c : contacts_) {
+    for (int i = 0; i < c.size; ++i) patch.require(c.node[i]);
+  }
+  for (Eigen::Index row = 0; row < rows(); ++row) {
+    const Contact& c = contact_of(row);
+    gap_[row] =
+        (row < n ? c.distance - c.radius : direction(row).dot(travel(row))) - along(row, patch.nodes(), u);
+  }
 }
 
 /// W C W^T, and the compliance of the contacts themselves. Column by column: C of a contact's force on the
 /// surface (in `next_`), then what of it each contact sees.
 void ContactSolver::assemble_delassus(const ContactPatch& patch) noexcept {
-  const int n = static_cast<int>(contacts_.size()), rows = rows_of_contact();
-  delassus_.shape(rows * n, rows * n);
-  const Eigen::Index size = 3 * patch.nodes();
-  auto moved = next_.head(size);
-  for (int column = 0; column < rows * n; ++column) {
-    const Contact& b = contacts_[column / rows];
-    const Vec3 db = direction(column / rows, column % rows), at_tip = patch.tool_compliance * b.at_tip(db);
+  const auto n = static_cast<Eigen::Index>(contacts_.size()), size = rows();
+  delassus_.shape(size, size);
+  const Eigen::Index unknowns = 3 * patch.nodes();
+  auto moved = next_.head(unknowns);
+  for (Eigen::Index column = 0; column < size; ++column) {
+    const Contact& b = contact_of(column);
+    const Vec3 db = direction(column), at_tip = patch.tool_compliance * b.at_tip(db);
     moved.setZero();
     for (int j = 0; j < b.size; ++j)
-      moved.noalias() += patch.compliance.block(0, 3 * b.node[j], size, 3) * (b.weight[j] * db);
-    for (int row = 0; row <= column; ++row) {
-      const Contact& a = contacts_[row / rows];
+      moved.noalias() += patch.compliance.block(0, 3 * b.node[j], unknowns, 3) * (b.weight[j] * db);
+    for (Eigen::Index row = 0; row <= column; ++row) {
+      const Contact& a = contact_of(row);
       Vec3 relative = a.tool == b.tool ? a.at_tip(at_tip) : Vec3(Vec3::Zero());
       for (int i = 0; i < a.size; ++i) relative += a.weight[i] * moved.segment<3>(3 * a.node[i]);
-      delassus_(row, column) = delassus_(column, row) = direction(row / rows, row % rows).dot(relative);
+      delassus_(row, column) = delassus_(column, row) = direction(row).dot(relative);
     }
   }
-  for (int row = 0; row < rows * n; ++row)
-    delassus_(row, row) += row % rows == 0 ? contact_compliance_ : friction_compliance_;
+  for (Eigen::Index row = 0; row < size; ++row)
+    delassus_(row, row) += row < n ? contact_compliance_ : friction_compliance_;
 }
 
 ContactForce ContactSolver::solve(ContactPatch& patch, const Tool& tool, const ToolPose& pose,
@@ -255,24 +348,34 @@ void ContactSolver::solve(ContactPatch& patch, std::span<const TouchingTool> too
     ++result.iterations;
     deform(patch.free, u, deformed_);
     find_contacts(tools, u, change);
-    const auto rows = static_cast<double>(contacts_.size()) * rows_of_contact();
-    if (!work_.spend(rows * (27.0 * m + 9 * rows))) {
+    find_friction_nodes(patch);
+    const auto size = static_cast<double>(rows());
+    if (!work_.spend(size * (27.0 * m + 9 * size))) {
       contacts_.clear();
+      find_friction_nodes(patch);
       next = u;
       break;
     }
     linearise(patch, u);
-    solve_linearised(patch, next);
+    // With friction a plain step costs most of what Newton's does, and is taken in its place.
+    const bool by_newton = path_.has_friction && recall(lambda_.head(rows())) && turns.next() &&
+                           newton_step(patch, u, change, next) &&
+                           (next - u).cwiseAbs().maxCoeff() < kLongestMove * radius;
+    const bool solved = by_newton || plain_step(patch, next) || !path_.has_friction;
     change = (next - u).cwiseAbs().maxCoeff();
-    result.converged = change <= effort.tolerance * radius && !work_.is_spent();
+    // Newton's next step is at least as much shorter than this one as this is than the last.
+    const double remaining =
+        by_newton && newton_worked ? change * std::min(1.0, change / last_change) : change;
+    result.converged = solved && remaining <= effort.tolerance * radius && !work_.is_spent();
     if (result.converged || result.iterations == effort.max_iterations) break;
     // Plain iteration, where Newton fails: never so far that the surface could pass the tip.
     const bool onward = result.iterations == 1 || increment.dot(next - u) > 0;
     increment = std::min(step.after(onward), kLongestMove * radius / change) * (next - u);
     if (newton_worked && change > last_change) turns.miss();
     last_change = change;
-    newton_worked = turns.next() && newton_step(patch, u, change, next) &&
-                    (next - u).cwiseAbs().maxCoeff() < kLongestMove * radius;
+    newton_worked =
+        by_newton || (!path_.has_friction && turns.next() && newton_step(patch, u, change, next) &&
+                      (next - u).cwiseAbs().maxCoeff() < kLongestMove * radius);
     if (newton_worked) {
       u = next;
     } else {
@@ -284,65 +387,108 @@ void ContactSolver::solve(ContactPatch& patch, std::span<const TouchingTool> too
   collect_result(m, result, forces);
 }
 
-/// Forces in the rows of the contacts, on the Delassus operator as it stands. `force`: where to start.
+/// Forces in the rows considered, on the Delassus operator as it stands. `force`: where to start; if that is
+/// `near`, and turns out not to be, it gives up soon.
 bool ContactSolver::solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
-                                   Eigen::Ref<Eigen::VectorXd> force) noexcept {
-  const auto delassus = delassus_.leftCols(gap.size());
-  if (!path_.has_friction) return complementarity_.solve(delassus, gap, force);
-  auto friction = friction_.head(gap.size() / 3);
-  for (Eigen::Index k = 0; k < friction.size(); ++k) friction[k] = contacts_[k].friction;
-  return coulomb_.solve(delassus, gap, friction, force);
+                                   Eigen::Ref<Eigen::VectorXd> force, bool near) noexcept {
+  const auto delassus = delassus_.leftCols(force.size());
+  if (second_.friction_nodes.empty()) return complementarity_.solve(delassus, gap, force);
+  return near ? coulomb_.solve_near(delassus, gap, friction_considered(), force, kInexact)
+              : coulomb_.solve(delassus, gap, friction_considered(), force, kInexact);
 }
 
 /// Keeps the forces of this iteration, as what to start from in the next, whose contacts are not all the
 /// same.
 void ContactSolver::store(const Eigen::Ref<const Eigen::VectorXd>& force) noexcept {
   rendered_.clear();
-  const int rows = rows_of_contact();
-  for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
-    if (!(force[rows * k] > 0)) continue;
-    const Vec3 rendered =
-        rows > 1 ? Vec3(frames_[k] * force.segment<3>(3 * k)) : force[k] * contacts_[k].normal;
-    rendered_.push_back({contacts_[k].node, contacts_[k].part, contacts_[k].tool, rendered});
+  const int n = static_cast<int>(contacts_.size());
+  for (int k = 0; k < n; ++k) {
+    const Contact& c = contacts_[k];
+    if (force[k] > 0) rendered_.push_back({vertices_of(c), c.part, c.tool, false, force[k] * c.normal});
+  }
+  for (int i = 0; i < static_cast<int>(friction_nodes_.places.size()); ++i) {
+    const Contact& c = friction_nodes_.places[i];
+    const Vec3 beta = friction_nodes_.frames[i].rightCols<2>() * force.segment<2>(n + 2 * i);
+    if (!beta.isZero(0)) rendered_.push_back({vertices_of(c), c.part, c.tool, true, beta});
   }
 }
 
-void ContactSolver::recall(Eigen::Ref<Eigen::VectorXd> force) const noexcept {
+/// Takes the forces of the iteration before, for as many rows as `force` has; false if there are none.
+bool ContactSolver::recall(Eigen::Ref<Eigen::VectorXd> force) const noexcept {
+  const auto before = [&](const Contact& c, bool friction) {
+    const std::array<int, 3> vertices = vertices_of(c);
+    const auto found = std::ranges::find_if(rendered_, [&](const FeatureForce& f) {
+      return f.vertex == vertices && f.part == c.part && f.tool == c.tool && f.friction == friction;
+    });
+    return found == rendered_.end() ? nullptr : &*found;
+  };
+  bool any = false;
   force.setZero();
-  for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
-    const auto same = [&](const Rendered& rendered) {
-      return rendered.node == contacts_[k].node && rendered.part == contacts_[k].part &&
-             rendered.tool == contacts_[k].tool;
-    };
-    const auto rendered = std::ranges::find_if(rendered_, same);
-    if (rendered == rendered_.end()) continue;
-    if (path_.has_friction) {
-      force.segment<3>(3 * k) = frames_[k].transpose() * rendered->force;
-    } else {
-      force[k] = rendered->force.norm();
-    }
+  const auto n = static_cast<Eigen::Index>(contacts_.size());
+  for (Eigen::Index row = 0; row < n; ++row) {
+    const FeatureForce* const rendered = before(contact_of(row), false);
+    if (rendered == nullptr) continue;
+    any = true;
+    force[row] = rendered->force.norm();
+  }
+  for (Eigen::Index row = n; row < force.size(); row += 2) {
+    const FeatureForce* const rendered = before(contact_of(row), true);
+    if (rendered == nullptr) continue;
+    for (int i = 0; i < 2; ++i) force[row + i] = direction(row + i).dot(rendered->force);
+  }
+  return any;
+}
+
+/// Lists the rows of the contacts considered, and of the places of friction that these press on.
+void ContactSolver::consider() noexcept {
+  second_.friction_nodes.clear();
+  second_.shares.clear();
+  second_.mu.clear();
+  second_.rows.assign(second_.considered.begin(), second_.considered.end());
+  for (const FrictionPlaces::Share& s : friction_nodes_.shares) {
+    const auto contact = std::ranges::lower_bound(second_.considered, s.contact);
+    if (contact == second_.considered.end() || *contact != s.contact) continue;
+    const auto known = std::ranges::find(second_.friction_nodes, s.place);
+    const int place = static_cast<int>(known - second_.friction_nodes.begin());
+    second_.shares.push_back({static_cast<int>(contact - second_.considered.begin()), place, s.share});
+    if (known != second_.friction_nodes.end()) continue;
+    second_.friction_nodes.push_back(s.place);
+    second_.mu.push_back(friction_nodes_.places[static_cast<std::size_t>(s.place)].friction);
+  }
+  for (const int node : second_.friction_nodes) {
+    const int row = static_cast<int>(contacts_.size()) + 2 * node;
+    second_.rows.push_back(row);
+    second_.rows.push_back(row + 1);
   }
 }
 
-/// Contact forces of the linearised problem, and the displacements they give.
-void ContactSolver::solve_linearised(const ContactPatch& patch, Eigen::Ref<Eigen::VectorXd> next) noexcept {
-  const auto n = static_cast<Eigen::Index>(contacts_.size()) * rows_of_contact();
-  auto lambda = lambda_.head(n);
+void ContactSolver::consider_all() noexcept {
+  second_.considered.resize(contacts_.size());
+  std::iota(second_.considered.begin(), second_.considered.end(), 0);
+  consider();
+}
+
+/// Contact forces of the linearised problem, and the displacements they give; false: the forces are only near
+/// to those.
+bool ContactSolver::plain_step(const ContactPatch& patch, Eigen::Ref<Eigen::VectorXd> next) noexcept {
+  assemble_delassus(patch);
+  consider_all();
+  auto lambda = lambda_.head(rows());
   recall(lambda);
-  solve_contacts(gap_.head(n), lambda);
+  const bool solved = solve_contacts(gap_.head(rows()), lambda);
   store(lambda);
   auto load = node_force_.head(3 * patch.nodes());
   load.setZero();
   for (MovedTool& tool : path_.tools) tool.tip_load.setZero();
-  for (int row = 0; row < n; ++row) {
+  for (Eigen::Index row = 0; row < rows(); ++row) {
     if (lambda[row] == 0) continue;
-    const int rows = rows_of_contact();
-    const Contact& c = contacts_[row / rows];
-    const Vec3 force = lambda[row] * direction(row / rows, row % rows);
+    const Contact& c = contact_of(row);
+    const Vec3 force = lambda[row] * direction(row);
     for (int i = 0; i < c.size; ++i) load.segment<3>(3 * c.node[i]) -= c.weight[i] * force;
     path_.tools[c.tool].tip_load += c.at_tip(force);
   }
   displace(patch, next);
+  return solved;
 }
 
 /// The displacement under the loads in `node_force_`, and those on the tips.
@@ -360,25 +506,23 @@ void ContactSolver::displace(const ContactPatch& patch, Eigen::Ref<Eigen::Vector
 
 void ContactSolver::collect_result(int nodes, const ContactForce& outcome,
                                    std::span<ContactForce> forces) noexcept {
-  const int rows = rows_of_contact();
+  const auto n = static_cast<Eigen::Index>(contacts_.size());
   force_size_ = 3 * nodes;
   node_force_.head(force_size_).setZero();
   std::ranges::fill(forces, outcome);
-  for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
-    if (!(lambda_[rows * k] > 0)) continue;
-    const Contact& c = contacts_[k];
+  for (Eigen::Index row = 0; row < rows(); ++row) {
+    if (lambda_[row] == 0 || (row < n && !(lambda_[row] > 0))) continue;
+    const Contact& c = contact_of(row);
     ContactForce& result = forces[c.tool];
-    ++result.contacts;
-    for (int row = 0; row < rows; ++row) {
-      const double size = lambda_[rows * k + row];
-      const Vec3 d = direction(k, row);
-      result.force += size * c.at_tip(d);
-      // The tip's normals pass through its centre; and the device does not render the part that a pivot
-      // carries.
-      if ((row > 0 || c.part != Contact::kTip) && !path_.tools[c.tool].pivots)
-        result.torque += c.arm.cross(size * d);
-      for (int i = 0; i < c.size; ++i) node_force_.segment<3>(3 * c.node[i]) -= size * c.weight[i] * d;
-    }
+    result.contacts += row < n;
+    const double size = lambda_[row];
+    const Vec3 d = direction(row);
+    result.force += size * c.at_tip(d);
+    // The tip's normals pass through its centre; and the device does not render the part that a pivot
+    // carries.
+    if ((row >= n || c.part != Contact::kTip) && !path_.tools[c.tool].pivots)
+      result.torque += c.arm.cross(size * d);
+    for (int i = 0; i < c.size; ++i) node_force_.segment<3>(3 * c.node[i]) -= size * c.weight[i] * d;
   }
 }
 
@@ -386,30 +530,27 @@ void ContactSolver::collect_result(int nodes, const ContactForce& outcome,
 /// what cannot give way.
 bool ContactSolver::is_passed() const noexcept {
   constexpr double kPassed = 0.01;  // of the tool radius; of tissue it is less than a millionth
-  const int rows = rows_of_contact();
   for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
-    if (lambda_[rows * k] * contact_compliance_ > kPassed * contacts_[k].radius) return true;
+    if (lambda_[k] * contact_compliance_ > kPassed * contacts_[k].radius) return true;
   }
   return false;
 }
 
 void ContactSolver::node_forces_of(int tool, Eigen::Ref<Eigen::VectorXd> forces) const noexcept {
-  const int rows = rows_of_contact();
   forces.setZero();
-  for (int k = 0; k < static_cast<int>(contacts_.size()); ++k) {
-    const Contact& c = contacts_[k];
-    if (c.tool != tool || !(lambda_[rows * k] > 0)) continue;
-    for (int row = 0; row < rows; ++row) {
-      for (int i = 0; i < c.size; ++i)
-        forces.segment<3>(3 * c.node[i]) -= lambda_[rows * k + row] * c.weight[i] * direction(k, row);
-    }
+  for (Eigen::Index row = 0; row < rows(); ++row) {
+    const Contact& c = contact_of(row);
+    if (c.tool != tool || lambda_[row] == 0) continue;
+    for (int i = 0; i < c.size; ++i)
+      forces.segment<3>(3 * c.node[i]) -= lambda_[row] * c.weight[i] * direction(row);
   }
 }
 
 std::size_t ContactSolver::bytes() const {
   return coulomb_.bytes() + complementarity_.bytes() + delassus_.bytes() + response_.bytes() +
          second_.curvature.bytes() + second_.compliance.bytes() + second_.bent.bytes() +
-         second_.toward.bytes() + second_.system.bytes() + second_.jacobian.bytes() + second_.spread.bytes();
+         second_.toward.bytes() + second_.system.bytes() + second_.jacobian.bytes() + second_.spread.bytes() +
+         second_.turning.bytes();
 }
 
 }  // namespace palpate

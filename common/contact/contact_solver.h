@@ -8,6 +8,7 @@
 #include "common/contact/complementarity.h"
 #include "common/contact/coulomb.h"
 #include "common/contact/narrow_phase.h"
+#include "common/contact/simplex_distance.h"
 #include "common/contact/tool.h"
 
 namespace palpate {
@@ -39,8 +40,9 @@ struct ContactPatch {
   /// Tells columns of `compliance` as contact asks for them: of most nodes none are needed. Absent: all are
   /// there. `begin` of the source has been called since the nodes were gathered.
   const ComplianceSource* source = nullptr;
-  std::span<const int> vertices;  ///< (m) with a source: the vertices of the surface that the nodes are
-  std::vector<char> filled;       ///< (m) with a source: whether the columns of a node are there
+  std::span<const int>
+      vertices;  ///< (m) the vertices of the surface that the nodes are; may be empty without a source
+  std::vector<char> filled;  ///< (m) with a source: whether the columns of a node are there
 
   int nodes() const { return static_cast<int>(free.size()); }
   /// Makes room for `max_nodes` and `max_triangles`, once; afterwards nothing here allocates within them.
@@ -59,6 +61,16 @@ struct ContactForce {
       true;  ///< false: the answer is finite, the geometry still moved by more than the tolerance
 };
 
+/// Force on the tool at a feature that it touches.
+struct FeatureForce {
+  std::array<int, 3>
+      vertex;  ///< of the surface, ascending, unused entries -1; or nodes of a patch without them
+  Contact::Part part;
+  int tool;
+  bool friction;  ///< across the normal of that vertex, by friction; else along the normal
+  Vec3 force;     ///< N
+};
+
 /// Start of an increment. Slip is measured from it, and there is no other memory of friction: a node without
 /// contact carries none. The result of `solve` is the start of the next increment: nodes at `free` + u, the
 /// tip at the pose + u_tip. So a path is a chain of solves, on the server and wherever it is replayed.
@@ -66,6 +78,8 @@ struct IncrementStart {
   std::span<const Vec3> nodes;  ///< (m) the patch nodes, m, world; more do no harm
   Vec3 tip = Vec3::Zero();      ///< the tool's tip, m, world
   Quat q_W = Quat::Identity();  ///< the tool's orientation
+  /// Forces to look from, as of the increment before; of the first tool, those of all.
+  std::span<const FeatureForce> forces = {};
 };
 
 /// A tool in a solve.
@@ -77,19 +91,20 @@ struct TouchingTool {
 };
 
 /// Unilateral contact of tools with an elastic triangle patch, with Coulomb friction where a tool has some:
-/// one problem for all of them. Finds displacements u of the nodes and of the tips, and forces
-/// f = lambda n + t, with
-///   u = C W^T f,   lambda >= 0,   gap(x + u) >= 0,   lambda . gap = 0,
-///   |t| <= mu lambda,   t = -mu lambda s / |s| where it slips by s in the increment, s = 0 where it sticks,
+/// one problem for all of them. Finds displacements u of the nodes and of the tips, normal forces lambda n of
+/// the features (faces, edges, vertices) and friction t at their nodes, with
+///   u = C W^T (lambda n, t),   lambda >= 0,   gap(x + u) >= 0,   lambda . gap = 0,
+///   |t| <= mu |N|,   t = -mu |N| s / |s| where it slips by s in the increment, s = 0 where it sticks,
 /// gap = distance to each feature minus radius, W = tip minus the contact point's share of each node, C the
-/// compliance of patch and tip together, s the part of W (position - position at the start) across the normal
-/// n (Duriez et al. 2006: backward Euler of Coulomb's law). The gap is that of the *deformed* surface: each
-/// iteration linearises it, solves the small problem on the Delassus operator G = W C W^T (normals only, by a
-/// ComplementaritySolver, where there is no friction; else a CoulombSolver), and repeats until nothing moves:
-/// without friction force is a function of place and not of step size. Newton steps, the same problem with
-/// the compliance that the curvature of the gaps leaves, make that quick. The tip must start outside the
-/// surface and within half a radius of a solved place; Simulation takes care of that. Allocates only in the
-/// constructor; one thread.
+/// compliance of patch and tip together, N the normal forces that a node bears, s the part of tip minus node
+/// (position - position at the start) across N (Duriez et al. 2006: backward Euler of Coulomb's law; by
+/// nodes, as features are often more, and their friction then is not determined). The gap is that of the
+/// *deformed* surface: each iteration linearises it, solves the small problem on the Delassus operator G = W
+/// C W^T (normals only, by a ComplementaritySolver, where there is no friction; else a CoulombSolver), and
+/// repeats until nothing moves: without friction force is a function of place and not of step size. Newton
+/// steps, the same problem with the compliance that the curvature of the gaps leaves, make that quick. The
+/// tip must start outside the surface and within half a radius of a solved place; Simulation takes care of
+/// that. Allocates only in the constructor; one thread.
 class ContactSolver {
  public:
   /// Largest patch it will be given; whether tools with friction will come, which takes nine times the memory
@@ -121,6 +136,8 @@ class ContactSolver {
 
   /// Nodal forces on the patch nodes (3m, N) of the last solve; the tissue feels minus what the tool feels.
   Eigen::Ref<const Eigen::VectorXd> node_forces() const { return node_force_.head(force_size_); }
+  /// Returns the forces of the last solve, feature by feature.
+  std::span<const FeatureForce> feature_forces() const noexcept { return rendered_; }
   /// Writes the part of these forces that one tool exerts into `forces` (3m).
   void node_forces_of(int tool, Eigen::Ref<Eigen::VectorXd> forces) const noexcept;
 
@@ -153,35 +170,48 @@ class ContactSolver {
   static double contact_compliance(double mean) noexcept;
 
  private:
-  int rows_of_contact() const { return path_.has_friction ? 3 : 1; }
+  /// Number of rows of the problem.
+  Eigen::Index rows() const {
+    return static_cast<Eigen::Index>(contacts_.size() + 2 * friction_nodes_.places.size());
+  }
+  const Contact& contact_of(Eigen::Index row) const;
   Eigen::Index tip_of(int tool) const;
-  Vec3 direction(int contact, int row) const;
-  Vec3 travel(const Contact& c) const;
+  Vec3 direction(Eigen::Index row) const;
+  double along(Eigen::Index row, Eigen::Index nodes, const Eigen::Ref<const Eigen::VectorXd>& u) const;
+  Vec3 travel(Eigen::Index row) const;
+  std::array<int, 3> vertices_of(const Contact& c) const;
   void start_increment(const ContactPatch& patch, std::span<const TouchingTool> tools) noexcept;
   void find_contacts(std::span<const TouchingTool> tools, const Eigen::Ref<const Eigen::VectorXd>& u,
                      double change) noexcept;
+  void find_friction_nodes(const ContactPatch& patch) noexcept;
+  void average_contacts(const Eigen::Ref<const Eigen::VectorXd>& force) noexcept;
   void linearise(ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u) noexcept;
   void assemble_delassus(const ContactPatch& patch) noexcept;
   void displace(const ContactPatch& patch, Eigen::Ref<Eigen::VectorXd> next) const noexcept;
-  bool solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
-                      Eigen::Ref<Eigen::VectorXd> force) noexcept;
+  void consider() noexcept;
+  void consider_all() noexcept;
+  FrictionPlaces friction_considered() const { return {second_.shares, second_.mu}; }
+  bool solve_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap, Eigen::Ref<Eigen::VectorXd> force,
+                      bool near = false) noexcept;
   void store(const Eigen::Ref<const Eigen::VectorXd>& force) noexcept;
-  void recall(Eigen::Ref<Eigen::VectorXd> force) const noexcept;
-  void solve_linearised(const ContactPatch& patch, Eigen::Ref<Eigen::VectorXd> next) noexcept;
+  bool recall(Eigen::Ref<Eigen::VectorXd> force) const noexcept;
+  bool plain_step(const ContactPatch& patch, Eigen::Ref<Eigen::VectorXd> next) noexcept;
   bool is_passed() const noexcept;
   void collect_result(int nodes, const ContactForce& outcome, std::span<ContactForce> forces) noexcept;
   // Second order, in contact_derivatives.cpp:
   void collect_nodes(int nodes) noexcept;
   void differentiate_contacts(int nodes) noexcept;
-  void differentiate_friction(int contact, Eigen::Index row, std::span<const int> slot) noexcept;
+  void differentiate_friction(int considered, const SimplexHessian* h, const WeightGradient& weights,
+                              std::span<const int> slot) noexcept;
   bool differentiate_considered(const ContactPatch& patch) noexcept;
   // and in contact_newton.cpp:
   template <class Visit>
-  void each_slot(Eigen::Index contact, const Visit& visit) const;
-  template <class Visit>
   void each_block_of_curvature(const Visit& visit) const;
   void assemble_system(const ContactPatch& patch) noexcept;
+  template <class Visit>
+  void each_slot(Eigen::Index row, const Visit& visit) const;
   void spread_over(Eigen::Index first, bool forces, Eigen::Ref<Eigen::MatrixXd> moved) const noexcept;
+  void find_gap_changes(Eigen::Index from, Eigen::Index to) noexcept;
   bool respond(const ContactPatch& patch, const Eigen::Ref<const Eigen::MatrixXd>& loads) noexcept;
   bool solve_on_active_set(const Eigen::Ref<const Eigen::VectorXd>& gap,
                            Eigen::Ref<Eigen::VectorXd> force) noexcept;
@@ -196,22 +226,23 @@ class ContactSolver {
   WorkBudget work_;
   double contact_compliance_ = 0, friction_compliance_ = 0;  // m/N, of this patch
   int most_nodes_, most_contacts_;                           // of a Newton step and of the tangent
-  // Rows are those of the contacts in turn: one each, along the normal; with friction two more, across it.
+  // Rows are those of the contacts, along their normals; then two of each place of friction, across it.
   ComplementaritySolver complementarity_;
   CoulombSolver coulomb_;
   std::vector<Contact> contacts_;
-  std::vector<Mat3> frames_;  // with friction: normal and the two directions across it, as columns
-  struct Rendered {
-    std::array<int, 3> node;
-    Contact::Part part;
-    int tool;
-    Vec3 force;
-  };
-  std::vector<Rendered> rendered_;  // what touched in the iteration before
+  /// Where friction acts: at each node of a contact of a tool with friction, once.
+  struct FrictionNodes {
+    std::vector<Contact> places;   // of a node alone, with the means of its contacts
+    std::vector<Mat3> frames;      // of each: normal and the two directions across it, as columns
+    std::vector<double> pressing;  // N, on each along its normal; 0: faint
+    std::vector<FrictionPlaces::Share> shares;
+    std::vector<int> at_node;  // of each tool in turn; -1: none
+  } friction_nodes_;
+  std::vector<FeatureForce> rendered_;  // what touched in the iteration before
   std::vector<Vec3> deformed_;
   BoundedMatrix response_;  // C~ A, then C~ of other loads, in the rows of the loaded nodes
   BoundedMatrix delassus_;  // and B C~ of other loads, to its right
-  Eigen::VectorXd gap_, lambda_, slack_, friction_, next_, increment_, node_force_;
+  Eigen::VectorXd gap_, lambda_, slack_, next_, increment_, node_force_;
   int force_size_ = 0;
   /// A tool in the increment in hand.
   struct MovedTool {
@@ -223,17 +254,26 @@ class ContactSolver {
   };
   /// The increment in hand.
   struct Increment {
-    std::vector<Vec3> was;  // where the nodes began, m
+    std::vector<Vec3> was;          // where the nodes began, m
+    std::span<const int> vertices;  // that the nodes are; empty: numbered as the nodes
     std::vector<MovedTool> tools;
     bool has_friction = false;  // one of them has
   } path_;
+  /// Entry of a row of B.
+  struct GapChange {
+    int at;
+    Vec3 by;
+  };
   /// Second derivatives: the contacts considered, their nodes (the tip last), and matrices over those nodes.
   struct SecondOrder {
-    std::vector<int> considered, active, nodes, slot_of_node;
+    std::vector<int> considered, friction_nodes, rows, active, nodes, slot_of_node;
+    std::vector<GapChange> gap_changes;  // a row of B, where it is not zero
+    std::vector<FrictionPlaces::Share> shares;
+    std::vector<double> mu;
     int system_sign = 1;  // of the determinant of I - C S
     int unloaded = 0;     // of `nodes`, the first ones
     BoundedMatrix curvature, compliance, bent, toward, system, jacobian;
-    BoundedMatrix spread;  // W^T, only with friction
+    BoundedMatrix spread, turning;  // A, and dw/dlambda at fixed places, only with friction
     Eigen::Matrix<double, Eigen::Dynamic, 3> moved, rhs, load_change;
     bool has_load_change = false;
   } second_;

@@ -24,6 +24,8 @@ constexpr double kMaxDrag = 3.0, kMaxBend = 0.5;
 // Contact linearisations a step may use, on its path and to settle with other tools, before it answers from
 // where it got to.
 constexpr int kMaxIterations = 400, kMaxSettling = 400;
+// Of an increment with friction: how far things end from where those of the one before went on to.
+constexpr double kForeseen = 0.1;
 
 /// How much of the tool's axis can be near the organ, m.
 double longest_axis(const Tool& tool, std::span<const Vec3> rest) {
@@ -54,6 +56,10 @@ ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, c
   stored_loads_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   if (!has_friction()) return;
   surface_was_.assign(rest.begin(), rest.end());
+  for (Trend* const trend : {&trend_, &stored_trend_}) {
+    trend->surface.reserve(static_cast<std::size_t>(finder_.max_nodes()));
+    trend->forces.reserve(static_cast<std::size_t>(finder_.max_nodes() + finder_.max_triangles()));
+  }
   nodes_were_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
 }
 
@@ -65,6 +71,10 @@ void ToolContact::change_surface(std::span<const Vec3> rest, const Surface& surf
   filled_.clear();
   predictor_.changes.clear();
   stored_predictor_.changes.clear();
+  for (Trend* const trend : {&trend_, &stored_trend_}) {
+    trend->surface.clear();
+    trend->forces.clear();
+  }
   std::erase_if(stored_loads_, [&](const VertexLoad& load) { return !on_surface(load.vertex); });
   for (State* const state : {&now_, &stored_}) {
     if (state->side >= 0 && !on_surface(state->side)) state->side = -1;
@@ -177,6 +187,7 @@ bool ToolContact::has_stopped(const ToolTissue& tissue) const {
 void ToolContact::note(const ContactForce& contact, ToolTissue tissue) {
   const bool touched = way_.pressed > 0 || way_.touched;
   way_.iterations += contact.iterations;
+  note_trend(contact, tissue);
   if (contact.contacts > 0) way_.pressed += way_.length;
   if (contact.contacts == 0 && touched && recover_from_inside(tissue)) way_.stopped = true;
 }
@@ -310,12 +321,14 @@ bool ToolContact::exhausted() const {
 void ToolContact::keep(std::span<const VertexLoad> loads) {
   stored_ = now_;
   stored_predictor_ = predictor_;
+  stored_trend_ = trend_;
   stored_loads_.assign(loads.begin(), loads.end());
 }
 
 void ToolContact::restore(ToolTissue tissue) {
   now_ = stored_;
   predictor_ = stored_predictor_;
+  trend_ = stored_trend_;
   tissue.set_loads(stored_loads_);
   tissue.apply_loads();
   tissue.mark_solved();
@@ -362,24 +375,55 @@ void ToolContact::separate() noexcept {
   now_.side = -1;
   now_.force = {};
   predictor_.changes.clear();
+  trend_.surface.clear();
+  trend_.forces.clear();
   if (grip_) grip_->open();
 }
 
 void ToolContact::start_increment(bool first, const ToolTissue& tissue) {
   if (!has_friction()) return;
-  tip_was_ = {now_.place.p_W + now_.tip_offset, now_.place.q_W};
+  const ToolPose tip(now_.place.p_W + now_.tip_offset, now_.place.q_W);
+  tip_was_ = tip;
+  offset_was_ = now_.tip_offset;
   increment_from_ = tissue.before();
   if (first) return;
   std::ranges::copy(tissue.positions(), surface_was_.begin());
   increment_from_ = surface_was_;
 }
 
+void ToolContact::note_trend(const ContactForce& contact, const ToolTissue& tissue) noexcept {
+  if (!has_friction() || way_.again) return;
+  trend_.surface.clear();
+  trend_.forces.clear();
+  if (contact.contacts == 0) return;
+  trend_.way = now_.place.p_W + offset_was_ - tip_was_.p_W;
+  trend_.offset = now_.tip_offset - offset_was_;
+  for (const int vertex : finder_.vertices())
+    trend_.surface.push_back({vertex, tissue.positions()[vertex] - increment_from_[vertex]});
+  const auto forces = solver_.feature_forces();
+  trend_.forces.assign(forces.begin(), forces.end());
+}
+
+/// Adds to the displacement to look from what the surface did in the increment before, by as much as the tool
+/// goes on in its direction. Returns how far things may be from there, of the tool radius.
+double ToolContact::follow_trend(Eigen::Ref<Eigen::VectorXd> u) noexcept {
+  if (trend_.surface.empty() || way_.again || trend_.way.isZero(0)) return 1;
+  const Vec3 way = now_.place.p_W + offset_was_ - tip_was_.p_W;
+  const double share = std::clamp(way.dot(trend_.way) / trend_.way.squaredNorm(), 0.0, 2.0);
+  for (const Trend::Moved& moved : trend_.surface) {
+    const auto at = std::ranges::find(filled_, moved.vertex);
+    if (at != filled_.end()) u.segment<3>(3 * (at - filled_.begin())) += share * moved.by;
+  }
+  u.tail<3>() += share * trend_.offset;
+  return kForeseen * (way - share * trend_.way).norm() / tool_.radius + kForeseen * way_.length;
+}
+
 /// Of the vertices in `filled_`: column by column where that is possible, as most are never needed.
 void ToolContact::take_compliance(const ToolTissue& tissue) {
   patch_.compliance.shape(3 * patch_.nodes(), 3 * patch_.nodes());
   patch_.source = tissue.traits().columns;
-  if (patch_.source == nullptr) return tissue.model().compliance(filled_, patch_);
   patch_.vertices = filled_;
+  if (patch_.source == nullptr) return tissue.model().compliance(filled_, patch_);
   patch_.filled.assign(filled_.size(), 0);
   patch_.source->begin(patch_);
 }
@@ -402,13 +446,15 @@ ContactForce ToolContact::solve_contact(ToolTissue tissue) {
   auto u = displacement_.head(3 * (m + 1));
   for (int i = 0; i < m; ++i) u.segment<3>(3 * i) = tissue.positions()[vertices[i]] - patch_.free[i];
   u.tail<3>() = now_.tip_offset;
+  const double expected = follow_trend(u);
   predict(u);
   nodes_were_.clear();
   if (has_friction()) {
     for (const int vertex : vertices) nodes_were_.push_back(increment_from_[vertex]);
   }
   const ContactForce contact =
-      solver_.solve(patch_, tool_, now_.place, u, {nodes_were_, tip_was_.p_W, tip_was_.q_W});
+      solver_.solve(patch_, tool_, now_.place, u, {nodes_were_, tip_was_.p_W, tip_was_.q_W, trend_.forces},
+                    {.expected = expected});
   now_.tip_offset = u.tail<3>();
   tissue.drop_loads();
   const auto forces = solver_.node_forces();
@@ -442,6 +488,8 @@ void ToolContact::predict(Eigen::Ref<Eigen::VectorXd> u) noexcept {
 void ToolContact::release(ToolTissue tissue) {
   now_.tip_offset.setZero();
   predictor_.changes.clear();
+  trend_.surface.clear();
+  trend_.forces.clear();
   tissue.release();
 }
 

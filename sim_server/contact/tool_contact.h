@@ -171,6 +171,8 @@ class ToolContact {
   void place_outside(const ToolPose& pose, ToolTissue tissue);
   void store_side(const ToolTissue& tissue) noexcept;
   bool recover_from_inside(ToolTissue tissue);
+  void note_trend(const ContactForce& contact, const ToolTissue& tissue) noexcept;
+  double follow_trend(Eigen::Ref<Eigen::VectorXd> u) noexcept;
   void start_increment(bool first, const ToolTissue& tissue);
   Vec3 place_at_entry(const ToolPose& pose, const Vec3& inside, double fraction,
                       const Vec3& entry) const noexcept;
@@ -198,6 +200,7 @@ class ToolContact {
   // Where the last increment began; only with friction: the tissue's `before`, or surface_was_, and the tip.
   std::span<const Vec3> increment_from_;
   std::vector<Vec3> surface_was_, nodes_were_;
+  Vec3 offset_was_ = Vec3::Zero();
   ToolPose tip_was_;
   /// The way of the tool in a step.
   struct Way {
@@ -225,6 +228,17 @@ class ToolContact {
   };
   State now_, stored_;
   std::vector<VertexLoad> stored_loads_;
+  /// How tool, surface and forces went in the last increment, with friction: the next may go on like that.
+  struct Trend {
+    struct Moved {
+      int vertex;
+      Vec3 by;  // m
+    };
+    Vec3 way = Vec3::Zero(), offset = Vec3::Zero();  // m, of the place, and of the tip from it
+    std::vector<Moved> surface;
+    std::vector<FeatureForce> forces;
+  };
+  Trend trend_, stored_trend_;
   /// Foretells the loads at the next place, to first order: how those at the place that was differentiated
   /// last change with the tool's.
   struct Predictor {

@@ -1,6 +1,8 @@
 // Contact with Coulomb friction against closed forms.
 #include <Eigen/Dense>
 #include <numbers>
+#include <set>
+#include <vector>
 
 #include "common/contact/contact_solver.h"
 #include "tests/support/allocation_guard.h"
@@ -165,7 +167,8 @@ TEST_CASE(
   CHECK(Vec3(force.force[0], 0, force.force[2]).normalized().dot(way) < -0.99);
 }
 
-TEST_CASE("friction: a small push sideways meets the stiffness of bonded contact, by another dense solve") {
+TEST_CASE("friction: a small push sideways meets the stiffness of bonded nodes, by another dense solve") {
+  // The points of contact follow the tool along their normals, the nodes that carry them across.
   Path path(half_space(6, 0.0008, 3e4));
   constexpr double kDepth = 1e-6;  // shallow: geometry hardly matters
   path.go(pressed(kDepth));
@@ -174,12 +177,26 @@ TEST_CASE("friction: a small push sideways meets the stiffness of bonded contact
   contacts.reserve(path.patch.triangles.size());
   find_contacts_on_patch(path.nodes, path.patch.triangles, kTool, path.tip, 1e-12, contacts);
   REQUIRE(static_cast<int>(contacts.size()) == before.contacts);
-  const auto n = static_cast<Eigen::Index>(contacts.size());
-  Eigen::MatrixXd w = Eigen::MatrixXd::Zero(3 * n, 3 * path.patch.nodes()), all(3 * n, 3);
+  std::vector<Eigen::RowVectorXd> bonds;
+  std::vector<Vec3> along;
+  const auto bond = [&](const Vec3& axis) -> Eigen::RowVectorXd& {
+    along.push_back(axis);
+    return bonds.emplace_back(Eigen::RowVectorXd::Zero(3 * path.patch.nodes()));
+  };
+  std::set<int> nodes;
+  for (const Contact& c : contacts) {
+    Eigen::RowVectorXd& row = bond(Vec3::UnitY());
+    for (int i = 0; i < c.size; ++i) row[3 * c.node[i] + 1] = c.weight[i];
+    nodes.insert(c.node.begin(), c.node.begin() + c.size);
+  }
+  for (const int node : nodes) {
+    for (const int axis : {0, 2}) bond(Vec3::Unit(axis))[3 * node + axis] = 1;
+  }
+  const auto n = static_cast<Eigen::Index>(bonds.size());
+  Eigen::MatrixXd w(n, 3 * path.patch.nodes()), all(n, 3);
   for (Eigen::Index k = 0; k < n; ++k) {
-    for (int i = 0; i < contacts[k].size; ++i)
-      w.block<3, 3>(3 * k, 3 * contacts[k].node[i]) = contacts[k].weight[i] * Mat3::Identity();
-    all.middleRows<3>(3 * k) = Mat3::Identity();
+    w.row(k) = bonds[static_cast<std::size_t>(k)];
+    all.row(k) = along[static_cast<std::size_t>(k)].transpose();
   }
   const Eigen::MatrixXd delassus = w * path.patch.compliance * w.transpose();
   const Mat3 bonded = -all.transpose() * delassus.completeOrthogonalDecomposition().solve(all);
@@ -289,7 +306,9 @@ TEST_CASE("friction: the tangent agrees with finite differences, in stick, in pa
   for (const double slide : {0.0, 3e-5, 1e-3}) {
     Path path(half_space(6, 0.0008, 3e4));
     path.go(pressed(-1e-5), pressed(4e-4), 20);
-    const Vec3 way(0.8, 0, 0.6), p = pressed(4e-4) + slide * way;
+    // What slipped last and rests would stick one way and slip the other: a step back, and all of it sticks.
+    const double depth = slide == 0 ? 3.98e-4 : 4e-4;
+    const Vec3 way(0.8, 0, 0.6), p = pressed(depth) + slide * way;
     path.go(pressed(4e-4), p, 20);
     // From there one more stride, as long as those before.
     const Vec3 there = p + (slide / 20) * way;
@@ -303,6 +322,20 @@ TEST_CASE("friction: the tangent agrees with finite differences, in stick, in pa
     }
     CAPTURE(slide, tangent, slope);
     CHECK((tangent - slope).norm() < 2e-3 * slope.norm());
+  }
+}
+
+TEST_CASE("friction: what slipped last and rests follows as if it stuck, the same both ways") {
+  Path path(half_space(6, 0.0008, 3e4));
+  path.go(pressed(-1e-5), pressed(4e-4), 20);
+  const Vec3 at_rest = path.look(pressed(4e-4)).force;
+  const Mat3 tangent = path.solver.tangent(path.patch);
+  CHECK((tangent - tangent.transpose()).norm() < 1e-6 * tangent.norm());
+  // Whichever way it goes, some of it slips: stick is the stiffer.
+  for (const Vec3& way : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1)}) {
+    const double slope = way.dot(path.look(pressed(4e-4) + 1e-9 * way).force - at_rest) / 1e-9;
+    CHECK(way.dot(tangent * way) < slope);
+    CHECK(way.dot(tangent * way) == Approx(slope).epsilon(0.05));
   }
 }
 
