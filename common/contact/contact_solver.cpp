@@ -182,8 +182,7 @@ void ContactSolver::start_increment(const ContactPatch& patch, std::span<const T
     increment.pivots = t.tool->trocar.has_value();
     increment.radius = t.tool->radius;
     increment.tip_was = t.start.tip;
-    // A sphere may spin, a pivoting shaft turns by its tip.
-    if (path_.has_friction && t.tool->length > 0 && !t.tool->trocar)
+    if (path_.has_friction && !t.tool->trocar)  // a pivoting shaft turns by its tip
       increment.turned = Mat3::Identity() - (t.start.q_W * t.pose.q_W.conjugate()).toRotationMatrix();
   }
   if (!path_.has_friction) return;

@@ -36,7 +36,7 @@ struct Tool {
 /// Pose of a tool.
 struct ToolPose {
   Vec3 p_W = Vec3::Zero();      ///< its tip, m
-  Quat q_W = Quat::Identity();  ///< its orientation, unit; matters to capsules
+  Quat q_W = Quat::Identity();  ///< its orientation, unit; of a sphere only friction and jaws know it
   ToolPose() = default;
   /// Takes a position (m), any expression of one; without rotation by default.
   template <class Place>

@@ -27,6 +27,7 @@ Grip::Grip(const ToolSettings& tool, std::span<const Vec3> rest, std::span<const
     : buttons_(tool.grasp_buttons),
       reach_(kReach * tool.shape.radius),
       max_nodes_(static_cast<std::size_t>(std::min(max_nodes, kMaxVertices))),
+      turns_(!tool.shape.trocar),
       touchable_(corners_of(touchable)) {
   vertices_.reserve(max_nodes_);
   offsets_.reserve(max_nodes_);
@@ -41,6 +42,7 @@ Grip::Grip(const ToolSettings& tool, std::span<const Vec3> rest, std::span<const
   stiffness_.resize(max_nodes_);
   if (!tool.grasp_place) return;
   close(*tool.grasp_place, rest);
+  closed_at_.reset();  // by the first pose
   if (!holds()) {
     fail("{}: no vertex of the surface that the tool may touch lies within {:g} mm of `grasp_place`",
          tool.grasp_where, 1e3 * reach_);
@@ -59,10 +61,11 @@ void Grip::change_surface(std::span<const Triangle> touchable, const std::functi
   offsets_.resize(stored);
 }
 
-void Grip::close(const Vec3& p_W, std::span<const Vec3> positions) noexcept {
+void Grip::close(const ToolPose& pose, std::span<const Vec3> positions) noexcept {
   closed_ = true;
+  closed_at_ = pose.q_W;
   for (const int vertex : touchable_) {
-    const Vec3 offset = positions[vertex] - p_W;
+    const Vec3 offset = positions[vertex] - pose.p_W;
     if (offset.norm() > reach_) continue;
     if (vertices_.size() == max_nodes_) {  // the nearest stay, in their order
       const auto furthest = std::ranges::max_element(offsets_, {}, &Vec3::norm) - offsets_.begin();
@@ -82,13 +85,18 @@ void Grip::open() noexcept {
   offsets_.clear();
 }
 
+Vec3 Grip::offset(std::size_t held, const Quat& q_W) const {
+  if (!closed_at_ || closed_at_->coeffs() == q_W.coeffs()) return offsets_[held];
+  return q_W * (closed_at_->conjugate() * offsets_[held]);
+}
+
 /// What is missing to the place of each vertex, into `misfit_`; the largest component.
-double Grip::misfit(const Vec3& p_W, const ToolTissue& tissue, std::span<const VertexLoad> own) {
-  const Vec3 tip = p_W - patch_.tool_compliance * sum_of(own);
+double Grip::misfit(const ToolPose& pose, const ToolTissue& tissue, std::span<const VertexLoad> own) {
+  const Vec3 tip = pose.p_W - patch_.tool_compliance * sum_of(own);
   double largest = 0;
   for (std::size_t i = 0; i < own.size(); ++i) {
     const Vec3 missing =
-        tip + offsets_[i] - tissue.positions()[vertices_[i]] - contact_compliance_ * own[i].force;
+        tip + offset(i, pose.q_W) - tissue.positions()[vertices_[i]] - contact_compliance_ * own[i].force;
     misfit_.segment<3>(3 * static_cast<Eigen::Index>(i)) = missing;
     largest = std::max(largest, missing.cwiseAbs().maxCoeff());
   }
@@ -153,14 +161,16 @@ Mat3 Grip::tangent() noexcept {
   return -spread.transpose() * spread;
 }
 
-Grip::Pull Grip::pull(const Vec3& p_W, ToolTissue tissue) {
+Grip::Pull Grip::pull(const ToolPose& pose, ToolTissue tissue) {
+  const bool turns = turns_ && tissue.traits().turns;
+  if (!closed_at_ || !turns) closed_at_ = pose.q_W;
   const std::size_t held = vertices_.size();
   const auto size = 3 * static_cast<Eigen::Index>(held);
   const std::span<VertexLoad> own = tissue.loads_on(vertices_);
   Pull pull{.vertices = static_cast<int>(held)};
   for (bool settled = false; !settled; ++pull.rounds) {
     tissue.apply_loads();
-    settled = misfit(p_W, tissue, own) <= kFits * reach_;
+    settled = misfit(pose, tissue, own) <= kFits * reach_;
     pull.converged = take_compliance(tissue) && (settled || pull.rounds < kMaxRounds);
     if (settled || !pull.converged) break;
     auto change = misfit_.head(size);
@@ -168,7 +178,10 @@ Grip::Pull Grip::pull(const Vec3& p_W, ToolTissue tissue) {
     for (std::size_t i = 0; i < held; ++i)
       own[i].force += change.segment<3>(3 * static_cast<Eigen::Index>(i));
   }
-  for (const VertexLoad& load : own) pull.force -= load.force;
+  for (std::size_t i = 0; i < held; ++i) {
+    pull.force -= own[i].force;
+    if (turns) pull.torque -= offset(i, pose.q_W).cross(own[i].force);
+  }
   if (pull.converged) pull.tangent = tangent();
   return pull;
 }

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "sim_server/contact/tissue.h"
@@ -9,10 +10,12 @@
 namespace palpate::sim {
 
 /// Tissue in the jaws of a tool: vertices of the surface attached to it both ways, each at the offset from
-/// the tool centre that it had when the jaws closed. With C the model's compliance at these m vertices, c_t
+/// the tool centre that it had when the jaws closed, which turns with the tool (but on a shaft that pivots,
+/// whose orientation the device does not set). With C the model's compliance at these m vertices, c_t
 /// the tool's, and E = (I ... I)^T, the loads f on the tissue hold
 ///   free + C f = E p + offsets - c_t E E^T f
-/// and the tool feels F = -E^T f, with the exact tangent dF/dp = -E^T (C + c_t E E^T)^-1 E. Newton's method:
+/// and the tool feels F = -E^T f and the torque -sum of offset x f about its centre, with the exact tangent
+/// dF/dp = -E^T (C + c_t E E^T)^-1 E at a fixed orientation. Newton's method:
 /// one round where the tissue is linear. Only set-up allocates; what the model throws passes through. One
 /// thread.
 class Grip {
@@ -34,31 +37,31 @@ class Grip {
   /// True if the jaws open, or close, at the next step.
   bool opens() const { return closed_ && buttons_ != 0 && !pressed_; }
   bool closes() const { return !closed_ && pressed_; }
-  /// Around what is there of the surface with the tool centre at `p_W`; perhaps nothing.
-  void close(const Vec3& p_W, std::span<const Vec3> positions) noexcept;
+  /// Around what is there of the surface with the tool at `pose`; perhaps nothing.
+  void close(const ToolPose& pose, std::span<const Vec3> positions) noexcept;
   /// Jaws without a button stay closed.
   void open() noexcept;
   bool holds() const { return !vertices_.empty(); }
   std::span<const int> vertices() const { return vertices_; }
-  /// Returns the offset of each of them from the tool centre, m.
-  std::span<const Vec3> offsets() const { return offsets_; }
+  /// Returns the offset of one of them from the centre of the tool at an orientation, m.
+  Vec3 offset(std::size_t held, const Quat& q_W) const;
   int max_vertices() const { return static_cast<int>(max_nodes_); }
 
-  /// Force on the tool, N, and its tangent, N/m; `vertices` 0: the jaws are empty.
+  /// Force on the tool, N, torque about its centre, N m, and tangent, N/m; `vertices` 0: the jaws are empty.
   struct Pull {
-    Vec3 force = Vec3::Zero();
+    Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
     Mat3 tangent = Mat3::Zero();
     int vertices = 0, rounds = 0;
     bool converged = true;
   };
-  /// Solves with the tool centre at `p_W`, and replaces the loads of the tool by those on the grasped
+  /// Solves with the tool at `pose`, and replaces the loads of the tool by those on the grasped
   /// vertices.
-  Pull pull(const Vec3& p_W, ToolTissue tissue);
+  Pull pull(const ToolPose& pose, ToolTissue tissue);
 
   std::size_t bytes() const;
 
  private:
-  double misfit(const Vec3& p_W, const ToolTissue& tissue, std::span<const VertexLoad> own);
+  double misfit(const ToolPose& pose, const ToolTissue& tissue, std::span<const VertexLoad> own);
   bool take_compliance(const ToolTissue& tissue);
   bool factor(const ToolTissue& tissue);
   void solve(Eigen::Ref<Eigen::VectorXd> misfit) const noexcept;
@@ -67,9 +70,12 @@ class Grip {
   std::uint16_t buttons_;
   double reach_;  // m from the tool centre
   std::size_t max_nodes_;
+  bool turns_;  // with the tool
+  std::optional<Quat>
+      closed_at_;  // the orientation of the tool when the jaws closed; of a tool not placed: none
   bool pressed_ = false, closed_ = false;
   std::vector<int> touchable_, vertices_;
-  std::vector<Vec3> offsets_;
+  std::vector<Vec3> offsets_;  // then, m
   ContactPatch patch_;
   BoundedMatrix compliance_, factor_;  // (3m x 3m) of the vertices when last factored, m/N; and its factor
   bool factored_ = false;

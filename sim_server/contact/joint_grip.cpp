@@ -65,13 +65,12 @@ double JointGrip::misfit(std::span<const ToolContact> tools, const Tissue& tissu
   double largest = 0;
   for (const Holder& holder : holders_) {
     const ToolContact& tool = tools[holder.tool];
-    const std::span<const Vec3> offsets = tool.held_offsets();
     const std::span<const VertexLoad> own =
-        std::span(loads_).subspan(static_cast<std::size_t>(holder.first), offsets.size());
+        std::span(loads_).subspan(static_cast<std::size_t>(holder.first), tool.held_vertices().size());
     const Vec3 tip = tool.place() - patch_.tool_compliance * sum_of(own);
     for (std::size_t i = 0; i < own.size(); ++i) {
       const Vec3 missing =
-          tip + offsets[i] - tissue.positions[own[i].vertex] - contact_compliance_ * own[i].force;
+          tip + tool.held_offset(i) - tissue.positions[own[i].vertex] - contact_compliance_ * own[i].force;
       misfit_.segment<3>(3 * (holder.first + static_cast<Eigen::Index>(i))) = missing;
       largest = std::max(largest, missing.cwiseAbs().maxCoeff());
     }

@@ -97,7 +97,7 @@ void ToolContact::open_grip(ToolTissue tissue) {
 
 void ToolContact::close_grip(ToolTissue tissue) {
   if (!grip_ || !grip_->closes() || !now_.placed || !now_.arrived) return;
-  grip_->close(now_.place.p_W, tissue.positions());
+  grip_->close(now_.place, tissue.positions());
   if (holds()) solve_grasp(now_.place, tissue);
 }
 
@@ -106,11 +106,12 @@ void ToolContact::solve_grasp(const ToolPose& pose, ToolTissue tissue) {
   now_.placed = now_.arrived = true;
   now_.place = pose;
   now_.tip_offset.setZero();
-  const Grip::Pull pull = grip_->pull(pose.p_W, tissue);
+  const Grip::Pull pull = grip_->pull(pose, tissue);
   tissue.mark_solved(grip_->vertices());
   if (!pull.force.allFinite()) return reject(tissue);
   now_.grasp_tangent = pull.tangent;
   now_.force = {.force = pull.force,
+                .torque = pull.torque,
                 .tangent = pull.tangent,
                 .contacts = pull.vertices,
                 .iterations = pull.rounds,
@@ -215,8 +216,10 @@ double ToolContact::increments_for(double motion, double surface) const noexcept
 }
 
 double ToolContact::increments_to(const ToolPose& pose) const noexcept {
-  // A far end goes around the tip on an arc, which is longer than its chord.
-  const double turn = tool_.length > 0 ? tool_.length * now_.place.q_W.angularDistance(pose.q_W) : 0;
+  // A far end goes around the tip on an arc, which is longer than its chord; with friction the surface
+  // counts.
+  const double around = tool_.length + (has_friction() && !tool_.trocar ? tool_.radius : 0),
+               turn = around > 0 ? around * now_.place.q_W.angularDistance(pose.q_W) : 0;
   const double motion = (pose.p_W - now_.place.p_W).norm() + turn;
   const double increments = std::clamp(std::ceil(motion / (kIncrement * tool_.radius)), 1.0, kMaxIncrements);
   if (!has_friction()) return increments;

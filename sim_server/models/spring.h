@@ -37,7 +37,9 @@ class Spring final : public DeformationModel, public StatefulModel {
   /// T^-1 for every pair of free vertices, under the loads of now.
   void compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;
   std::span<const Vec3> apply(std::span<const VertexLoad> loads) noexcept override;
-  ModelTraits traits() noexcept override { return {.constant_compliance = per_length2_ == 0, .state = this}; }
+  ModelTraits traits() noexcept override {
+    return {.constant_compliance = per_length2_ == 0, .turns = false, .state = this};
+  }
   std::vector<MemoryPart> memory() const override;
   std::any save() override { return state_; }
   FreeMotion restore(const std::any& state) override;

@@ -164,6 +164,8 @@ struct ModelTraits {
   /// that a tangent made of it would be far too steep to publish, and the rendered force is the mean over the
   /// last quarter of a step, as that at one instant chatters.
   bool publishes_tangents = true;
+  bool turns =
+      true;  ///< false: it moves as one piece that no torque turns, so jaws that hold it turn without it
   const ComplianceSource* columns = nullptr;  ///< `compliance` column by column; null: not precomputed
   NonlinearModel* nonlinear = nullptr;
   CuttableModel* cuttable = nullptr;

@@ -58,6 +58,32 @@ TEST_CASE("friction on a rigid organ: mu F_n against the slide, whatever the ste
   }
 }
 
+TEST_CASE("friction: a ball that rolls is not held back, one that spins is pushed, on a rigid organ") {
+  // Over a plane at y = 0, by 1 mm in 20 steps: the point of contact slips by (1 - roll) of the way, less
+  // what the contact gives way by before.
+  constexpr double kWay = 0.001, kNormal = 1.6, kDepth = 0.002;
+  for (const double roll : {0.0, 0.5, 1.0, 2.0}) {
+    Block rigid(1, kMu, "rigid");
+    std::vector<ToolInput> input(1);
+    const auto at = [&](double x, double depth) {
+      const double angle = -roll * x / kRadius;
+      input[0].pose = ToolPose(press(x, depth), Quat(Eigen::AngleAxisd(angle, Vec3::UnitZ())));
+      return rigid.step(input, kDt)[0];
+    };
+    at(0, -0.001);
+    at(0, kDepth);
+    ToolForce force;
+    for (int i = 1; i <= 20; ++i) force = at(kWay * i / 20, kDepth);
+    CAPTURE(roll, force.force.transpose(), force.torque.transpose());
+    const double right = std::clamp(-(1 - roll) * kWay * kNormal / kDepth, -kMu * kNormal, kMu * kNormal);
+    CHECK_FALSE(force.flagged);
+    CHECK(force.force[0] == Approx(right).margin(1e-3 * kMu * kNormal));
+    CHECK(force.force[1] == Approx(kNormal).epsilon(1e-3));
+    // About the centre: the arm is (0, -radius, 0).
+    CHECK(force.torque[2] == Approx(kRadius * right).margin(1e-3 * kRadius * kMu * kNormal));
+  }
+}
+
 TEST_CASE("friction: the way between two places is bent as the velocities say, wild ones hardly matter") {
   // Round an arc of 4 mm radius, 30 degrees a step, 2 mm deep.
   constexpr double kTurn = 0.5, kArc = 0.004;
