@@ -113,6 +113,30 @@ void run_contact(benchmark::State& state, std::string_view model) {
                 slide(on->press.place, on->press.normal.unitOrthogonal(), on->radius()));
 }
 
+/// A ball pressed by 4 mm into the block of 2 mm edges that ships, on an oval of 16 by 8 mm, 30 mm/s: a step
+/// with friction against one without. Of a ball of 6, 12 and 20 mm some 18, 36 and 64 features touch.
+void run_oval(benchmark::State& state, double radius, double friction) {
+  constexpr double kDepth = 0.004;
+  Scene scene = test::example_scene("block_friction");
+  ToolSettings& tool = scene.tools.front();
+  tool.shape.radius = radius;
+  tool.shape.friction = friction;
+  tool.reach.reset();
+  Simulation simulation(scene);
+  const auto at = [&](std::size_t i, double depth) {
+    const double phi = 2 * std::numbers::pi * static_cast<double>(i) / kSlideSteps;
+    return Vec3(-0.008 * std::cos(phi), radius - depth, 0.004 * std::sin(phi));
+  };
+  for (int i = -10; i <= 10; ++i) simulation.step(at(0, 0.1 * i * kDepth), kPeriod);
+  std::array<Vec3, kSlideSteps> places;
+  ToolForce force;
+  for (std::size_t i = 0; i < kSlideSteps; ++i)
+    force = simulation.step(places[i] = at(i + 1, kDepth), kPeriod);
+  show(state, simulation.state_hash());
+  state.counters["touching"] = force.contacts;
+  time_steps_at(state, simulation, places);
+}
+
 /// A flat patch of `side` x `side` nodes, 3 mm apart, that gives way where it is pressed and near it.
 ContactPatch flat_patch(int side) {
   ContactPatch patch;
@@ -180,6 +204,12 @@ void add_server_rows() {
   for (const std::string_view scene : {kFriction, kDense, kTiles}) {
     add(fmt::format("step/quasi_static/{}", scene),
         [scene](benchmark::State& state) { run_contact(state, scene); });
+  }
+  for (const double radius : {0.006, 0.012, 0.02}) {
+    for (const double friction : {0.0, 0.3}) {
+      add(fmt::format("step/oval/{:g}_mm/{}", 1e3 * radius, friction > 0 ? "rubbing" : "smooth"),
+          [=](benchmark::State& state) { run_oval(state, radius, friction); });
+    }
   }
   add("contact/flat_patch", run_contact_alone);
   add("virtual_session/5_s", run_virtual_session);
