@@ -1,4 +1,5 @@
 // Two instruments that hold the same tissue.
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <functional>
 #include <vector>
@@ -25,48 +26,52 @@ Scene held_twice(const std::string& model, double apart, double depth = 0.03) {
   return scene;
 }
 
-/// Force (N), and torque (N m) about a tool's place, that displace the vertices of the top within `kReach` of
-/// the places of tools by `displaced` (m), by the stiffness matrix of the body; nothing of compliance, grips
-/// or turns. `on`: only those near this place count.
+/// The stiffness matrix of a body, factored; nothing of compliance, grips or turns.
+struct Body {
+  Body(const TetMesh& its_mesh, const Scene& scene)
+      : mesh(its_mesh),
+        dofs(static_cast<int>(mesh.vertices.size()), fixed_vertices(scene, mesh)),
+        factor(test::dense_stiffness(Solid(mesh, *scene.material), dofs)) {}
+  TetMesh mesh;
+  FreeDofs dofs;
+  Eigen::LLT<Eigen::MatrixXd> factor;
+};
+
+/// Force (N), and torque (N m) about a place, with which the vertices of the top within `kReach` of the
+/// places of tools are displaced by `displaced` (m). `on`: only those within `within` of this place count.
 struct Wrench {
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
 };
-Wrench displacing(const TetMesh& mesh, const Scene& scene, const std::function<Vec3(const Vec3&)>& displaced,
+Wrench displacing(const Body& body, const Scene& scene, const std::function<Vec3(const Vec3&)>& displaced,
                   const Vec3& on, double within) {
-  const FreeDofs dofs(static_cast<int>(mesh.vertices.size()), fixed_vertices(scene, mesh));
-  const Eigen::MatrixXd stiffness = test::dense_stiffness(Solid(mesh, *scene.material), dofs);
-  std::vector<int> held, free;
+  std::vector<int> held;
   std::vector<Vec3> places;
-  Eigen::VectorXd u = Eigen::VectorXd::Zero(dofs.count);
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    const Vec3& x = mesh.vertices[v];
+  for (std::size_t v = 0; v < body.mesh.vertices.size(); ++v) {
+    const Vec3& x = body.mesh.vertices[v];
     const bool is_held = std::ranges::any_of(scene.tools, [&](const ToolSettings& tool) {
       return x.y() > -1e-9 && (x - *tool.grasp_place).norm() <= kReach;
     });
-    if (dofs.first[v] < 0) continue;
-    for (int axis = 0; axis < 3; ++axis) (is_held ? held : free).push_back(dofs.first[v] + axis);
-    if (!is_held) continue;
-    u.segment<3>(dofs.first[v]) = displaced(x);
+    if (!is_held || body.dofs.first[v] < 0) continue;
+    for (int axis = 0; axis < 3; ++axis) held.push_back(body.dofs.first[v] + axis);
     places.push_back(x);
   }
-  const Eigen::VectorXd known = stiffness(free, held) * u(held);
-  u(free) = -stiffness(free, free).llt().solve(known);
-  const Eigen::VectorXd forces = stiffness * u;
+  const auto size = static_cast<Eigen::Index>(held.size());
+  Eigen::MatrixXd loads = Eigen::MatrixXd::Zero(body.dofs.count, size);
+  Eigen::VectorXd u(size);
+  for (Eigen::Index k = 0; k < size; ++k) {
+    loads(held[static_cast<std::size_t>(k)], k) = 1;
+    if (k % 3 == 0) u.segment<3>(k) = displaced(places[static_cast<std::size_t>(k / 3)]);
+  }
+  const Eigen::MatrixXd compliance = body.factor.solve(loads)(held, Eigen::all);
+  const Eigen::VectorXd forces = compliance.llt().solve(u);
   Wrench sum;
   for (std::size_t i = 0; i < places.size(); ++i) {
     if ((places[i] - on).norm() > within) continue;
-    const Vec3 force = forces.segment<3>(held[3 * i]);
+    const Vec3 force = forces.segment<3>(3 * static_cast<Eigen::Index>(i));
     sum.force += force;
     sum.torque += (places[i] + displaced(places[i]) - on).cross(force);
   }
   return sum;
-}
-
-/// The force (N) that lifts the vertices held by all tools by `lift` (m).
-Vec3 lifting_force(const TetMesh& mesh, const Scene& scene, const Vec3& lift) {
-  return displacing(
-             mesh, scene, [&](const Vec3&) { return lift; }, Vec3::Zero(), 1)
-      .force;
 }
 
 }  // namespace
@@ -74,10 +79,13 @@ Vec3 lifting_force(const TetMesh& mesh, const Scene& scene, const Vec3& lift) {
 TEST_CASE("grip: two instruments that lift the same tissue share its force, as the stiffness matrix has it") {
   const auto mesh = [] { return test::soft_block(Vec3(0.05, 0.03, 0.03), {20, 8, 12}); };
   const Vec3 lift(0, 0.005, 0);
+  const Body body(mesh(), held_twice("quasi_static", 0.02));
   for (const double apart : {0.006, 0.0025, 0.02}) {  // at 2.5 mm they hold some of the same vertices
     const Scene scene = held_twice("quasi_static", apart);
     Simulation block(scene, mesh());
-    const Vec3 right = lifting_force(block.mesh(), scene, lift);
+    const Vec3 right = displacing(
+                           body, scene, [&](const Vec3&) { return lift; }, Vec3::Zero(), 1)
+                           .force;
     REQUIRE(right.y() > 0.5);
     int flagged = 0;
     Vec3 first, second;
@@ -108,7 +116,7 @@ TEST_CASE("grip: jaws that turn turn what they hold, and bear its torque, as the
   block.step(at(placed), kDt);
   const auto turned = block.step(at(turn * placed), kDt);
   const Wrench right = displacing(
-      block.mesh(), scene,
+      Body(block.mesh(), scene), scene,
       [&](const Vec3& x) -> Vec3 {
         return (x - a).norm() <= kReach ? Vec3(turn * (x - a) - (x - a)) : Vec3(Vec3::Zero());
       },
