@@ -27,12 +27,12 @@ struct FrictionPlaces {
 /// where p is what presses on the place (Duriez, Dubois, Kheddar and Andriot 2006, IEEE TVCG 12:36, eq. 4 and
 /// 5: slip over the increment stands for velocity, which is backward Euler). G need not be symmetric. Several
 /// contacts may share the place of their friction: so the problem stays well posed where contacts are more
-/// than the nodes that they touch. First the contacts that are closed are found by block pivoting with all
-/// friction frozen, in turn with the directions of friction; from there semismooth Newton steps on the
-/// augmented Lagrangian form (Alart and Curnier 1991, Comput. Methods Appl. Mech. Eng. 92:353) end within a
-/// few solves of a dense system of what is closed. Where they do not, they begin again from a better place,
-/// which block Gauss-Seidel sweeps find. Allocates only in the constructor; one thread; the same input gives
-/// the same output, bit by bit.
+/// than the nodes that they touch. Semismooth Newton steps on the augmented Lagrangian form of friction
+/// (Alart and Curnier 1991, Comput. Methods Appl. Mech. Eng. 92:353); in each, the contacts that are closed
+/// are found by block pivoting (Judice and Pires 1994, Comput. Oper. Res. 21:587), with the friction of each
+/// place linearised: one or two solves of a dense system of what is closed. Where that does not end, it
+/// begins again from a better place, which Gauss-Seidel sweeps find. Allocates only in the constructor; one
+/// thread; the same input gives the same output, bit by bit.
 class CoulombSolver {
  public:
   /// `contacts`, `places`: the most that `solve` will be given.
