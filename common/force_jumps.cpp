@@ -39,6 +39,12 @@ void add_to(Json& report, const std::string& name, const std::optional<ForceJump
   report["largest_" + name + "_percent"] = jumps->largest_percent;
 }
 
+std::optional<ForceJumps> jumps_in(const Json& report, const std::string& name) {
+  const auto count = report.find(name + "s");
+  if (count == report.end() || count->is_null()) return std::nullopt;
+  return ForceJumps{count->get<std::uint64_t>(), report.at("largest_" + name + "_percent").get<double>()};
+}
+
 std::string snaps_text(const ForceJumps& snaps) {
   return fmt::format("the force of the simulation itself jumped {} times, largest {:.1f} % of peak",
                      snaps.count, snaps.largest_percent);

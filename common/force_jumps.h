@@ -19,6 +19,8 @@ struct ForceJumps {
 
 /// Writes the two as `NAMEs` and `largest_NAME_percent`; nothing where they were not measured.
 void add_to(Json& report, const std::string& name, const std::optional<ForceJumps>& jumps);
+/// Returns what `add_to` wrote; nothing where it is absent, or null.
+std::optional<ForceJumps> jumps_in(const Json& report, const std::string& name);
 /// Returns "the force of the simulation itself jumped 2 times, largest 45.8 % of peak".
 std::string snaps_text(const ForceJumps& snaps);
 /// Returns such a sentence on the jumps that `UnexplainedJumps` counts.

@@ -216,12 +216,8 @@ void print_reference(const Json& rows, std::size_t begin) {
         row["between"].get<std::string>(), number("between_mean_percent"), number("between_p99_percent"),
         number("between_max_percent"));
   fmt::print("\n");
-  const auto jumps = [&](const char* count, const char* largest) {
-    return ForceJumps{row[count].get<std::uint64_t>(), number(largest)};
-  };
-  if (!row["snaps"].is_null()) fmt::print("  {}\n", snaps_text(jumps("snaps", "largest_snap_percent")));
-  if (!row["unexplained_jumps"].is_null())
-    fmt::print("  {}\n", unexplained_text(jumps("unexplained_jumps", "largest_unexplained_jump_percent")));
+  if (const auto snaps = jumps_in(row, "snap")) fmt::print("  {}\n", snaps_text(*snaps));
+  if (const auto jumps = jumps_in(row, "unexplained_jump")) fmt::print("  {}\n", unexplained_text(*jumps));
 }
 
 void print(const Json& rows) {

@@ -270,10 +270,8 @@ void print_tool(const Json& tool) {
       "  force   {:.0f} samples, age {:.1f} ms (p50), {:.1f} (p99), {:.1f} (max); largest force {:.2f} N\n",
       number(force, "samples"), number(age, "p50"), number(age, "p99"), number(age, "max"),
       number(force, "max_newton"));
-  if (force.contains("unexplained_jumps")) {
-    fmt::print("          {}\n", unexplained_text({force["unexplained_jumps"].get<std::uint64_t>(),
-                                                   number(force, "largest_unexplained_jump_percent")}));
-  }
+  if (const auto jumps = jumps_in(force, "unexplained_jump"))
+    fmt::print("          {}\n", unexplained_text(*jumps));
   if (!force["stand_ins"].empty() || number(force, "surface_pages") > 0) {
     fmt::print("  law     {}; {:.0f} pages of the surface came\n",
                !force["stand_ins"].empty()

@@ -182,11 +182,8 @@ void print_summary(const Json& report, const Simulation& simulation) {
   }
   print_errors(report);
   for (std::size_t i = 0; i < report["tools"].size(); ++i) {
-    const Json& tool = report["tools"][i];
-    if (!tool.contains("unexplained_jumps")) continue;
-    fmt::print("            tool {}: {}\n", i + 1,
-               unexplained_text({tool["unexplained_jumps"].get<std::uint64_t>(),
-                                 tool["largest_unexplained_jump_percent"].get<double>()}));
+    if (const auto jumps = jumps_in(report["tools"][i], "unexplained_jump"))
+      fmt::print("            tool {}: {}\n", i + 1, unexplained_text(*jumps));
   }
   std::fflush(stdout);
 }

@@ -81,6 +81,11 @@ TEST_CASE("a gap is no snap, and samples that are too slow or push nothing measu
   CHECK(report.empty());
   add_to(report, "snap", ForceJumps{2, 45.8});
   CHECK(report.dump() == R"({"snaps":2,"largest_snap_percent":45.8})");
+  CHECK(jumps_in(report, "snap")->count == 2);
+  CHECK(jumps_in(report, "snap")->largest_percent == 45.8);
+  CHECK_FALSE(jumps_in(report, "unexplained_jump"));
+  report["snaps"] = nullptr;  // a row of a table that did not measure it
+  CHECK_FALSE(jumps_in(report, "snap"));
 }
 
 TEST_CASE("published tangents explain all of a spring, however it is pressed and left") {
