@@ -144,7 +144,8 @@ void ContactSolver::differentiate_friction(int considered, const SimplexHessian*
 bool ContactSolver::differentiate_considered(const ContactPatch& patch) noexcept {
   collect_nodes(patch.nodes());
   if (static_cast<int>(second_.nodes.size()) > most_nodes_ + static_cast<int>(path_.tools.size()) ||
-      static_cast<int>(second_.considered.size()) > most_contacts_)
+      static_cast<int>(second_.considered.size()) > most_contacts_ ||
+      static_cast<int>(second_.friction_nodes.size()) > most_nodes_)
     return false;
   differentiate_contacts(patch.nodes());
   return true;

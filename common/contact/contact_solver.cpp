@@ -12,9 +12,11 @@ constexpr double kFirstStep = 2.0 / 3;  // of the way to the solution of the fir
 // Of the largest patch: how much may be near enough to touch, where Newton steps are taken.
 constexpr double kTouching = 0.5;
 constexpr int kFewest = 96;  // never fewer nodes, or contacts: those of a client's patch (`ContactOnPatch`)
+// Of what the conditions of friction lack, remains for the next iteration, which changes them by more: half
+// as many solves in all as at 0.
+constexpr double kInexact = 1e-2;
 // How far beyond the radius features are considered: a multiple of what moved last, within fractions of the
 // radius.
-constexpr double kInexact = 1e-2;  // of what the conditions of friction lack, remains for the next iteration
 constexpr double kMargin = 4, kMinReach = 1e-3, kMaxReach = 0.05;
 
 /// Where the nodes are, displaced by `u`, in `places`, which has room for them.
@@ -223,6 +225,7 @@ void ContactSolver::find_friction_nodes(const ContactPatch& patch) noexcept {
     const Contact& c = contacts_[k];
     for (int i = 0; c.friction > 0 && i < c.size; ++i) {
       int& place = f.at_node[slot_of(c.tool, c.node[i])];
+      if (place < 0 && f.places.size() == f.places.capacity()) continue;  // as of contacts: no room
       if (place < 0) {
         place = static_cast<int>(f.places.size());
         f.places.push_back(c);

@@ -8,14 +8,16 @@
 namespace palpate {
 namespace {
 
-constexpr int kMaxNewton = 16, kNear = 8;       // steps, from anywhere and from near a solution
-constexpr int kHalvings = 6;                    // of a step that does not gain so much
-constexpr double kGain = 0.95;                  // of the residual before: a shorter step must leave less
-constexpr int kRounds = 2, kSweeps = 20;        // rounds of sweeps, each twice as many as before
-constexpr double kTolerance = 1e-12;            // of the residual, by contact and place
-constexpr int kFruitless = 4, kExchanges = 12;  // in blocks without progress; in all
-constexpr double kTie = 1e-5;                   // of the bound of friction: on it and at rest, it sticks
-constexpr double kPivotNoise = 1e-12;           // of the largest gap: rounding of an exchange
+constexpr int kMaxNewton = 16, kNear = 8;  // steps, from anywhere and from near a solution
+constexpr int kHalvings = 6;               // of a step that does not gain so much
+constexpr double kGain = 0.95;             // of the residual before: a shorter step must leave less
+constexpr int kRounds = 2, kSweeps = 20;   // rounds of sweeps, each twice as many as before
+constexpr double kTolerance = 1e-12;       // of the residual, by contact and place
+// Exchanges in blocks without progress; in all: what does not end within 12 did not within 40 (64 contacts).
+constexpr int kFruitless = 4, kExchanges = 12;
+// Of the bound of friction: so little slip is what a solve leaves of none, and sticks.
+constexpr double kTie = 1e-5;
+constexpr double kPivotNoise = 1e-12;  // of the largest gap: rounding of an exchange
 
 /// Into the disc of radius r.
 Eigen::Vector2d project(const Eigen::Vector2d& v, double r) {
