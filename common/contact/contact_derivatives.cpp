@@ -96,50 +96,6 @@ void ContactSolver::differentiate_contacts(int nodes) noexcept {
   }
 }
 
-/// How what a contact presses on the nodes of its friction changes as its point moves over the surface, and
-/// with its force: of B the rows of those places, and below those of all forces the ones of what presses
-/// there, of A its own column, and S. `slot`: of its nodes, then of the tip. With N = sum of w lambda n on a
-/// node, that changes by
-///   d|N| = N . dN / |N|,   d(N / |N|) = (1 - n n^T) dN / |N|,   dN = sum of w n dlambda + lambda d(w n),
-/// where d lambda = lambda turns nothing.
-void ContactSolver::differentiate_friction(int considered, const SimplexHessian* h,
-                                           const WeightGradient& weights,
-                                           std::span<const int> slot) noexcept {
-  const int k = second_.considered[considered];
-  const Contact& c = contacts_[k];
-  const auto all = static_cast<Eigen::Index>(contacts_.size()),
-             contacts = static_cast<Eigen::Index>(second_.considered.size()),
-             n = static_cast<Eigen::Index>(second_.rows.size());
-  for (const FrictionPlaces::Share& s : second_.shares) {
-    if (s.contact != considered) continue;
-    const int node = second_.friction_nodes[s.place];
-    const double pressing = friction_nodes_.pressing[node];
-    if (!(pressing > 0)) continue;
-    const Contact& place = friction_nodes_.places[node];
-    const auto across = friction_nodes_.frames[node].rightCols<2>();
-    const auto corner = std::ranges::find(c.node, place.node[0]) - c.node.begin();
-    const Eigen::Index row = contacts + 2 * s.place, place_row = all + 2 * node;
-    const Eigen::Vector2d force = lambda_.segment<2>(place_row),
-                          turn = c.weight[corner] / pressing * (across.transpose() * c.normal);
-    const double passed = place.normal.dot(travel(place_row));
-    const Vec3 tip = place.at_tip(place.normal);
-    second_.turning.block<2, 1>(row, considered) = -passed * turn;
-    second_.spread.block<3, 1>(3 * slot[corner], considered) += force.dot(turn) * place.normal;
-    second_.spread.block<3, 1>(3 * slot[c.size], considered) -= force.dot(turn) * tip;
-    for (int j = 0; h != nullptr && j <= c.size; ++j) {
-      Mat3 change = lambda_[k] * c.normal * weights.block<1, 3>(corner, 3 * j);
-      for (int i = 0; i < c.size; ++i)  // dn, as d gap / dx_i = -b_i n and the b_i sum to one
-        change -= lambda_[k] * c.weight[corner] * h->block<3, 3>(3 * i, 3 * j);
-      const Eigen::Matrix<double, 2, 3> turns = across.transpose() * change / pressing;
-      second_.jacobian.block<2, 3>(row, 3 * slot[j]) -= passed * turns;
-      second_.jacobian.block<1, 3>(n + s.place, 3 * slot[j]) += place.normal.transpose() * change;
-      second_.curvature.block<3, 3>(3 * slot[corner], 3 * slot[j]) +=
-          place.normal * (force.transpose() * turns);
-      second_.curvature.block<3, 3>(3 * slot[c.size], 3 * slot[j]) -= tip * (force.transpose() * turns);
-    }
-  }
-}
-
 /// False where more is near the tool than there is room for.
 bool ContactSolver::differentiate_considered(const ContactPatch& patch) noexcept {
   collect_nodes(patch.nodes());

@@ -107,8 +107,8 @@ struct TouchingTool {
 /// that. Allocates only in the constructor; one thread.
 class ContactSolver {
  public:
-  /// Largest patch it will be given; whether tools with friction will come, which takes nine times the memory
-  /// per pair of contacts; how many tools at once, at most `kMaxTools`.
+  /// Largest patch it will be given; whether tools with friction will come, whose problem has up to three
+  /// rows more for each node; how many tools at once, at most `kMaxTools`.
   ContactSolver(int max_nodes, int max_triangles, bool friction = false, int tools = 1);
 
   /// Limits and tolerances of a solve.
@@ -230,7 +230,7 @@ class ContactSolver {
   ComplementaritySolver complementarity_;
   CoulombSolver coulomb_;
   std::vector<Contact> contacts_;
-  /// Where friction acts: at each node of a contact of a tool with friction, once.
+  /// Nodes at which friction acts: each node of a contact of a tool with friction, once.
   struct FrictionNodes {
     std::vector<Contact> places;   // of a node alone, with the means of its contacts
     std::vector<Mat3> frames;      // of each: normal and the two directions across it, as columns

@@ -7,9 +7,9 @@
 
 namespace palpate {
 
-/// Where friction acts: m places, each pressed by its shares of the normal forces of n contacts. Where G has
-/// m rows more than there are forces, and g as well, these say how much more presses on each place, N: shares
-/// change as the surface moves.
+/// Places at which friction acts, m of them, each pressed by its shares of the normal forces of n contacts.
+/// Where G and g have m rows more than there are forces, these give the further force that presses on each
+/// place, N, as shares change with the motion of the surface.
 struct FrictionPlaces {
   struct Share {
     int contact, place;
@@ -45,7 +45,7 @@ class CoulombSolver {
   /// or on work, was reached: z then lies in the friction cones, no more.
   bool solve(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix, const Eigen::Ref<const Eigen::VectorXd>& g,
              const FrictionPlaces& friction, Eigen::Ref<Eigen::VectorXd> z, double share = 0) noexcept;
-  /// As `solve`, from a `z` near the solution; false, with `z` anywhere, soon after that turns out to be far.
+  /// Solves from a `z` near the solution. False, with `z` unchanged, soon after it turns out to be far.
   bool solve_near(const Eigen::Ref<const Eigen::MatrixXd>& g_matrix,
                   const Eigen::Ref<const Eigen::VectorXd>& g, const FrictionPlaces& friction,
                   Eigen::Ref<Eigen::VectorXd> z, double share = 0) noexcept;
@@ -70,7 +70,7 @@ class CoulombSolver {
     Eigen::Vector2d direction = Eigen::Vector2d::Zero();  // of beta, where it slips
     double fraction = 0;  // kappa = mu p / |beta - rho w_t|, [0, 1), where it slips
   };
-  /// What presses on a place beyond its shares.
+  /// Returns the force that presses on a place beyond its shares, N.
   double more_pressure(int place) const {
     return moves_ ? slack_[row_of(static_cast<int>(friction_.mu.size())) + place] : 0;
   }

@@ -228,7 +228,8 @@ class ToolContact {
   };
   State now_, stored_;
   std::vector<VertexLoad> stored_loads_;
-  /// How tool, surface and forces went in the last increment, with friction: the next may go on like that.
+  /// Motion of tool and surface in the last increment with friction, and its forces: the next looks from
+  /// there.
   struct Trend {
     struct Moved {
       int vertex;
