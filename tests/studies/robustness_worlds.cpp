@@ -164,8 +164,9 @@ Verdict trocar_lever(const Setting& setting, const Column& column) {
   World lying = trocar;
   lying.file.tools = {capsule(0.035)};
   lying.hands = [way](double t) {
-    const Vec3 p = way.at(t);
-    return std::vector<ToolInput>{at(p, Quat::FromTwoVectors(Vec3::UnitZ(), kPivot - p))};
+    const Vec3 p = way.at(t), axis = (kPivot - p).normalized();
+    return std::vector<ToolInput>{
+        at(p, Quat(1 + axis.z(), -axis.y(), axis.x(), 0).normalized())};  // z to axis
   };
   // By virtual work: the hand at the tip bears what the contact turns about the pivot, and what pushes along
   // the axis.

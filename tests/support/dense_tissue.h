@@ -1,7 +1,6 @@
 #pragma once
-#include <Eigen/Eigenvalues>
-
 #include "sim_server/elasticity/tensors.h"
+#include "tests/support/dense_algebra.h"
 #include "tests/support/stiffness.h"
 
 namespace palpate::test {
@@ -30,9 +29,9 @@ struct DenseTissue {
         if (j >= 0) stiffness.block<3, 3>(i, j) = all.block<3, 3>(3 * a, 3 * b);
       }
     }
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(stiffness, mass.asDiagonal());
-    squares = solver.eigenvalues();
-    modes = solver.eigenvectors();
+    const DenseModes dense = dense_modes(stiffness, mass);
+    squares = dense.squares;
+    modes = dense.shapes;
   }
   double highest() const { return std::sqrt(squares[squares.size() - 1]); }  ///< rad/s
 };

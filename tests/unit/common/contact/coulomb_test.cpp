@@ -1,6 +1,6 @@
 #include "common/contact/coulomb.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 
 #include "tests/support/allocation_guard.h"

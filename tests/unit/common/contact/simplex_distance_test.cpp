@@ -1,9 +1,9 @@
 #include "common/contact/simplex_distance.h"
 
-#include <Eigen/LU>
 #include <array>
 
 #include "tests/support/catch.h"
+#include "tests/support/dense_algebra.h"
 #include "tests/support/random.h"
 
 using namespace palpate;
@@ -41,7 +41,7 @@ double distance_to_hull(const std::vector<Vec3>& y) {
   if (m == 1) return r.norm();
   Eigen::MatrixXd e(3, m - 1);
   for (int i = 1; i < m; ++i) e.col(i - 1) = y[i] - y[0];
-  const Eigen::VectorXd b = (e.transpose() * e).inverse() * e.transpose() * r;
+  const Eigen::VectorXd b = test::solve_definite(e.transpose() * e, e.transpose() * r);
   return (r - e * b).norm();
 }
 
@@ -57,7 +57,7 @@ TEST_CASE("the Hessian of the distance to a point, a line and a plane agrees wit
     if (m > 1) {
       Eigen::MatrixXd e(3, m - 1);
       for (int i = 1; i < m; ++i) e.col(i - 1) = y[i] - y[0];
-      const Eigen::VectorXd b = (e.transpose() * e).inverse() * e.transpose() * (y.back() - y[0]);
+      const Eigen::VectorXd b = test::solve_definite(e.transpose() * e, e.transpose() * (y.back() - y[0]));
       weight[0] = 1 - b.sum();
       for (int i = 1; i < m; ++i) weight[i] = b[i - 1];
     }

@@ -1,11 +1,10 @@
 // Tools with an axis: capsules, and shafts that pivot.
 #include "common/contact/tool.h"
 
-#include <Eigen/Dense>
-
 #include "common/contact/contact_solver.h"
 #include "common/contact/simplex_distance.h"
 #include "tests/support/catch.h"
+#include "tests/support/dense_algebra.h"
 #include "tests/support/random.h"
 
 using namespace palpate;
@@ -75,7 +74,7 @@ Tool instrument(double friction = 0) {
 /// Along +x, tilted by `tilt` (rad) about z, tip left.
 ToolPose lying(double height, double tilt) {
   const Vec3 way(std::cos(tilt), std::sin(tilt), 0);
-  return {Vec3(-0.008, height, 0.0003), Quat::FromTwoVectors(Vec3::UnitZ(), way)};
+  return {Vec3(-0.008, height, 0.0003), test::turn_between(Vec3::UnitZ(), way)};
 }
 
 double sampled_distance(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -127,7 +126,7 @@ TEST_CASE("the Hessian of the distance to an edge or a vertex of what slides alo
       e.col(0) = axis;
       if (m == 2) e.col(1) = -(at[1] - at[0]);
       const Vec3 from = (pivots ? pivot : at[m]) - at[0];
-      const Eigen::VectorXd free = -(e.transpose() * e).inverse() * e.transpose() * from;
+      const Eigen::VectorXd free = -test::solve_definite(e.transpose() * e, e.transpose() * from);
       return std::pair<Eigen::VectorXd, Vec3>(free, from + e * free);
     };
     const auto [free, rho] = solve(y);

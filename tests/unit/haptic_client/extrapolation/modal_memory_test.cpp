@@ -1,12 +1,12 @@
 // The slow modes as a client steps them, on a surface of one triangle with modes made up by hand.
 #include "haptic_client/extrapolation/modal_memory.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "protocol/surface_pages.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
+#include "tests/support/dense_algebra.h"
 
 using namespace palpate;
 using namespace palpate::client;
@@ -67,10 +67,7 @@ Eigen::Vector3d relaxed(double t, const Eigen::Vector3d& from, double p) {
   a << 0, 1, 0, -kW * kW, -kDamping, kW * kW * kFraction, 1 / kTime, 0, -1 / kTime;
   const double q = p / (kW * kW * (1 - kFraction));
   const Eigen::Vector3d rest(q, 0, q);
-  const Eigen::EigenSolver<Eigen::Matrix3d> eigen(a);
-  const Eigen::Vector3cd start = eigen.eigenvectors().inverse() * (from - rest),
-                         grown = (eigen.eigenvalues() * t).array().exp() * start.array();
-  return rest + (eigen.eigenvectors() * grown).real();
+  return rest + test::solution_at(t, a, from - rest);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "sim_server/mesh/shapes.h"
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/catch.h"
+#include "tests/support/dense_algebra.h"
 #include "tests/support/scenes.h"
 #include "tests/support/soft_block.h"
 #include "tests/support/tool_inputs.h"
@@ -22,7 +23,7 @@ Simulation organ(const Tool& tool) {
 const std::array<Tool, 4> kTools{Tool{kRadius}, Tool{kRadius, 0.3}, Tool{.radius = kRadius, .length = 0.015},
                                  Tool{.radius = kRadius, .friction = 0.3, .length = 0.015}};
 /// A capsule's axis lies along x.
-const Quat kLevel = Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitX());
+const Quat kLevel = test::turn_between(Vec3::UnitZ(), Vec3::UnitX());
 
 }  // namespace
 
@@ -64,7 +65,7 @@ TEST_CASE("a capsule that turns by a right angle in one step presses the surface
              slow = organ({.radius = kRadius, .length = 0.02});
   const Vec3 p(0, 0.018, 0.0013);
   const auto turned = [](double angle) {
-    return Quat(Eigen::AngleAxisd(angle, Vec3::UnitZ())) * Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitX());
+    return Quat(Eigen::AngleAxisd(angle, Vec3::UnitZ())) * test::turn_between(Vec3::UnitZ(), Vec3::UnitX());
   };
   REQUIRE(fast.step({p, turned(0)}, kDt).contacts == 0);
   const ToolForce force = fast.step({p, turned(-1.5)}, kDt);
@@ -140,7 +141,7 @@ TEST_CASE("before a shaft touches, the nearest surface is told for all of it, as
   CHECK(plane.gap <= Approx(0.002 * 0.2 / 0.06));
   const Tool lying{.radius = kRadius, .length = 0.05};
   Simulation capsule = organ(lying);
-  const Quat tilted = Quat::FromTwoVectors(Vec3::UnitZ(), Vec3(0.8, -0.6, 0));
+  const Quat tilted = test::turn_between(Vec3::UnitZ(), Vec3(0.8, -0.6, 0));
   const Vec3 high(-0.02, 0.037, 0.0013);  // its far end is 30 mm lower: 7 mm above the top
   CHECK(capsule.step({high, tilted}, kDt).contacts == 0);
   const Linearisation below = capsule.linearise(0, high, nullptr);

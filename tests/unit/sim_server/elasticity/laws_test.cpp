@@ -3,10 +3,10 @@
 #include "sim_server/elasticity/laws.h"
 
 #include <Eigen/LU>
-#include <Eigen/SVD>
 
 #include "sim_server/elasticity/rotations.h"
 #include "tests/support/catch.h"
+#include "tests/support/dense_algebra.h"
 #include "tests/support/random.h"
 
 using namespace palpate;
@@ -147,7 +147,7 @@ TEST_CASE("laws: the nearest rotation, also of what is flat or turned inside out
     CHECK(R.determinant() == Approx(1).epsilon(1e-12));
     // No other rotation is nearer: |F - Q| is least where tr(Q^T F) is largest, which by singular values is
     // the sum of them, the least one negative where F is turned inside out.
-    const Vec3 s = Eigen::JacobiSVD<Mat3>(F).singularValues();
+    const Vec3 s = test::singular_values(F);
     const double most = s[0] + s[1] + (F.determinant() < 0 ? -s[2] : s[2]);
     CHECK((R.transpose() * F).trace() == Approx(most).epsilon(1e-9));
   }

@@ -10,6 +10,7 @@
 #include "sim_server/mesh/shapes.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
+#include "tests/support/dense_algebra.h"
 #include "tests/support/dense_tissue.h"
 #include "tests/support/random.h"
 #include "tests/support/soft_block.h"
@@ -70,7 +71,7 @@ Recursion watch(const Tissue& tissue, int mode, const RayleighDamping& damping, 
     before.row(i - 1) << q[i], -q[i - 1];
     after[i - 1] = q[i + 1];
   }
-  const Eigen::Vector2d found = before.colPivHouseholderQr().solve(after);
+  const Eigen::Vector2d found = test::solve_least(before, after);
   return {found[0], found[1], strayed};
 }
 
@@ -256,7 +257,7 @@ TEST_CASE(
   CHECK((as_vector(once.state.u) - as_vector(twice.state.u)).norm() < 1e-14 * as_vector(once.state.u).norm());
 
   ExplicitMotion resting(tissue.tensors, {20, 1e-5});
-  const Eigen::VectorXd still = tissue.dense.stiffness.llt().solve(as_vector(force));
+  const Eigen::VectorXd still = test::solve_definite(tissue.dense.stiffness, as_vector(force));
   start_in(resting, still);
   resting.state.f = force;
   for (int i = 0; i < 20; ++i) resting.run(10, 0.5 * h, force);

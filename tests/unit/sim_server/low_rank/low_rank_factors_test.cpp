@@ -1,8 +1,7 @@
 #include "sim_server/low_rank/low_rank_factors.h"
 
-#include <Eigen/QR>
-
 #include "tests/support/catch.h"
+#include "tests/support/dense_algebra.h"
 #include "tests/support/random.h"
 
 using namespace palpate::sim;
@@ -13,7 +12,7 @@ namespace {
 Eigen::MatrixXd orthonormal(Eigen::Index n, Eigen::Index k, std::uint64_t seed) {
   palpate::test::Random random(seed);
   const Eigen::MatrixXd any = Eigen::MatrixXd::NullaryExpr(n, k, [&] { return random.between(-1, 1); });
-  return Eigen::HouseholderQR<Eigen::MatrixXd>(any).householderQ() * Eigen::MatrixXd::Identity(n, k);
+  return palpate::test::orthonormal(any);
 }
 
 /// (90 x 60) with the singular values 1, 1/2, 1/4, ... 2^-19.

@@ -1,14 +1,13 @@
 // The reduced model against a dense solution of the same tissue: slow modes in motion, the rest at once.
 #include "sim_server/models/reduced.h"
 
-#include <Eigen/Eigenvalues>
-
 #include "common/error.h"
 #include "sim_server/models/quasi_static.h"
 #include "sim_server/simulation/simulation.h"
 #include "sim_server/statics/linear_statics.h"
 #include "sim_server/tissue/rayleigh_damping.h"
 #include "tests/support/catch.h"
+#include "tests/support/dense_algebra.h"
 #include "tests/support/scenes.h"
 #include "tests/support/solids.h"
 #include "tests/support/stiffness.h"
@@ -54,10 +53,9 @@ struct Dense {
     for (std::size_t i = 0; i < masses.size(); ++i) {
       if (dofs.first[i] >= 0) m.segment<3>(dofs.first[i]).setConstant(masses[i]);
     }
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(dense_stiffness(solid, dofs),
-                                                                           Eigen::MatrixXd(m.asDiagonal()));
-    squares = solver.eigenvalues();
-    modes = solver.eigenvectors();
+    const test::DenseModes dense = test::dense_modes(dense_stiffness(solid, dofs), m);
+    squares = dense.squares;
+    modes = dense.shapes;
   }
 };
 
@@ -91,11 +89,10 @@ TEST_CASE("modes of a body that was almost this one are refined to those that a 
   const VibrationModes before = vibration_modes(statics.factor(), masses, 12, "test");
   const VibrationModes modes = refined_modes(statics.factor(), others, before.shapes).value();
   const Eigen::MatrixXd dense = Eigen::MatrixXd(statics.stiffness.lower()).selfadjointView<Eigen::Lower>();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> right(dense,
-                                                                        Eigen::MatrixXd(others.asDiagonal()));
+  const test::DenseModes right = test::dense_modes(dense, others);
   double change = 0;
   for (int k = 0; k < 12; ++k) {
-    const double frequency = std::sqrt(right.eigenvalues()[k]);
+    const double frequency = std::sqrt(right.squares[k]);
     CHECK(modes.frequencies[k] == Approx(frequency).epsilon(k < 10 ? 1e-3 : 5e-3));  // the last ones lag
     change = std::max(change, std::abs(before.frequencies[k] / frequency - 1));
     for (int j = 0; j <= k; ++j) {

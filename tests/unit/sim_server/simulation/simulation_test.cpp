@@ -4,6 +4,7 @@
 #include "sim_server/mesh/shapes.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
+#include "tests/support/dense_algebra.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 #include "tests/support/tool_inputs.h"
@@ -195,7 +196,7 @@ TEST_CASE("a long tool on a surface finer than it has room for: finite, settled,
   scene.tools[0].shape.length = kLength;
   scene.tools[0].reach = Box{Vec3(-1, -1e-3, -1), Vec3(1, 1e-3, 1)};
   Simulation block(scene, grid_block(x, {-0.012, -0.008, -0.004, 0}, z));
-  const Quat level = Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitX());
+  const Quat level = test::turn_between(Vec3::UnitZ(), Vec3::UnitX());
   const auto axis = [](double depth) { return Vec3(-kLength / 2, kRadius - depth, 0.0003); };
   ToolForce force;
   for (double depth = -0.002; depth < 0.0021; depth += 0.0005) {

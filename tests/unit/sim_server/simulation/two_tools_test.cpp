@@ -5,6 +5,7 @@
 #include "sim_server/simulation/simulation.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/catch.h"
+#include "tests/support/dense_algebra.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 #include "tests/support/soft_block.h"
@@ -67,7 +68,7 @@ Eigen::VectorXd holding_forces(const Simulation& block) {
   }
   for (int dof = 0; dof < dofs.count; ++dof) (on_surface[dof] ? surface : inside).push_back(dof);
   const Eigen::VectorXd known = stiffness(inside, surface) * u(surface);
-  u(inside) = -stiffness(inside, inside).llt().solve(known);
+  u(inside) = -test::solve_definite(stiffness(inside, inside), known);
   const Eigen::VectorXd forces = stiffness * u;
   Eigen::VectorXd all = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(mesh.vertices.size()));
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {

@@ -1,11 +1,11 @@
 // Bodies in motion against closed forms and a dense eigen-solver.
 #include "sim_server/solvers/dynamics.h"
 
-#include <Eigen/Eigenvalues>
 #include <numbers>
 
 #include "sim_server/solvers/equilibrium.h"
 #include "tests/support/catch.h"
+#include "tests/support/dense_algebra.h"
 #include "tests/support/solids.h"
 
 using namespace palpate;
@@ -41,14 +41,13 @@ std::pair<double, Eigen::VectorXd> lowest_mode(const Solid& solid, const FreeDof
   solid.add_stiffness(solid.rest(), k);
   const Eigen::MatrixXd dense = k.lower();
   const std::vector<double> masses = solid.masses();
-  Eigen::MatrixXd m = Eigen::MatrixXd::Zero(dofs.count, dofs.count);
+  Eigen::VectorXd m = Eigen::VectorXd::Zero(dofs.count);
   for (std::size_t i = 0; i < masses.size(); ++i) {
-    for (int axis = 0; dofs.first[i] >= 0 && axis < 3; ++axis)
-      m(dofs.first[i] + axis, dofs.first[i] + axis) = masses[i];
+    if (dofs.first[i] >= 0) m.segment<3>(dofs.first[i]).setConstant(masses[i]);
   }
   const Eigen::MatrixXd full = dense.selfadjointView<Eigen::Lower>();
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(full, m);
-  return {std::sqrt(eigen.eigenvalues()[0]), eigen.eigenvectors().col(0)};
+  const test::DenseModes modes = test::dense_modes(full, m);
+  return {std::sqrt(modes.squares[0]), modes.shapes.col(0)};
 }
 
 }  // namespace

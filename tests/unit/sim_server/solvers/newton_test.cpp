@@ -2,9 +2,8 @@
 // with a Jacobian that is not assembled.
 #include "sim_server/solvers/newton.h"
 
-#include <Eigen/Dense>
-
 #include "tests/support/catch.h"
+#include "tests/support/dense_algebra.h"
 
 using namespace palpate;
 using namespace palpate::sim;
@@ -26,7 +25,7 @@ ResidualAlong cubic(double balance, int* calls = nullptr) {
 
 Eigen::MatrixXd with_spectrum(const Eigen::VectorXd& values) {
   const Eigen::MatrixXd noise = Eigen::MatrixXd::Random(values.size(), values.size());
-  const Eigen::MatrixXd q = Eigen::HouseholderQR<Eigen::MatrixXd>(noise).householderQ();
+  const Eigen::MatrixXd q = test::orthonormal(noise);
   return q * values.asDiagonal() * q.transpose();
 }
 
@@ -72,14 +71,14 @@ TEST_CASE("newton: conjugate gradients solve in as many iterations as A has eige
   Eigen::VectorXd values(12);
   values << 1, 1, 1, 1, 5, 5, 5, 5, 5, 40, 40, 40;
   const Eigen::MatrixXd a = with_spectrum(values);
-  const Eigen::VectorXd b = Eigen::VectorXd::Random(12), exact = a.ldlt().solve(b);
+  const Eigen::VectorXd b = Eigen::VectorXd::Random(12), exact = test::solve_definite(a, b);
   int calls = 0;
   Eigen::VectorXd x = conjugate_gradients(b, product(a, &calls), product(identity()), {1e-11, 20});
   CHECK(calls == 3);
   CHECK((x - exact).norm() < 1e-9 * exact.norm());
   // With A^-1 for preconditioner, one.
   calls = 0;
-  const Eigen::MatrixXd inverse = a.inverse();
+  const Eigen::MatrixXd inverse = test::solve_definite(a, Eigen::MatrixXd::Identity(a.rows(), a.cols()));
   x = conjugate_gradients(b, product(a, &calls), product(inverse), {1e-11, 20});
   CHECK(calls == 1);
   CHECK((x - exact).norm() < 1e-9 * exact.norm());

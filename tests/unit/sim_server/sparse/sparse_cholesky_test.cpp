@@ -1,7 +1,5 @@
 #include "sim_server/sparse/sparse_cholesky.h"
 
-#include <Eigen/Cholesky>
-
 #ifdef PALPATE_WITH_TBB
 #include <oneapi/tbb/global_control.h>
 #endif
@@ -9,6 +7,7 @@
 #include "common/error.h"
 #include "sim_server/elasticity/solid.h"
 #include "tests/support/catch.h"
+#include "tests/support/dense_algebra.h"
 #include "tests/support/solids.h"
 
 using namespace palpate;
@@ -53,7 +52,8 @@ double imbalance(const SparseMatrix& a, const Eigen::MatrixXd& x) {
 TEST_CASE("a block of the inverse is that of the dense inverse, and symmetric to the last bit") {
   const StiffnessMatrix matrix = stiffness_of_block(7);
   const Eigen::MatrixXd dense = Eigen::MatrixXd(matrix.lower()).selfadjointView<Eigen::Lower>();
-  const Eigen::MatrixXd exact = dense.llt().solve(Eigen::MatrixXd::Identity(dense.rows(), dense.cols()));
+  const Eigen::MatrixXd exact =
+      test::solve_definite(dense, Eigen::MatrixXd::Identity(dense.rows(), dense.cols()));
   const SparseCholesky factor(matrix.lower(), "test");
   for (const int apart : {1, 3, 17, 500}) {  // all of it, and ever fewer rows, not in their order
     CAPTURE(apart);
@@ -115,7 +115,8 @@ TEST_CASE(
     "rows of the inverse come group by group, each pair of groups once, as the dense inverse has them") {
   const StiffnessMatrix matrix = stiffness_of_block(7);
   const Eigen::MatrixXd dense = Eigen::MatrixXd(matrix.lower()).selfadjointView<Eigen::Lower>();
-  const Eigen::MatrixXd exact = dense.llt().solve(Eigen::MatrixXd::Identity(dense.rows(), dense.cols()));
+  const Eigen::MatrixXd exact =
+      test::solve_definite(dense, Eigen::MatrixXd::Identity(dense.rows(), dense.cols()));
   const SparseCholesky factor(matrix.lower(), "test"), single(matrix.lower(), "test", Precision::kSingle);
   std::vector<int> unknowns;  // not in their order, and not all
   for (int k = 0; k < dense.rows(); k += 2) unknowns.push_back((k * 577) % static_cast<int>(dense.rows()));
@@ -139,7 +140,7 @@ TEST_CASE("a factor answers as a dense one does") {
   const Eigen::MatrixXd dense = Eigen::MatrixXd(matrix.lower()).selfadjointView<Eigen::Lower>();
   Eigen::MatrixXd loads = Eigen::MatrixXd::Identity(dense.rows(), 7);
   loads.col(3) = load_of(dense.rows());
-  const Eigen::MatrixXd exact = dense.llt().solve(loads);
+  const Eigen::MatrixXd exact = test::solve_definite(dense, loads);
   const SparseCholesky factor(matrix.lower(), "test");
   CHECK((factor.solve(loads) - exact).norm() < 1e-12 * exact.norm());
   CHECK((factor.solve(loads.col(3)) - exact.col(3)).norm() < 1e-12 * exact.col(3).norm());
