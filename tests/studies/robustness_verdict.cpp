@@ -21,7 +21,7 @@ constexpr int kSlower = 8;            // a multiple of all `Trial::phases`
 constexpr double kGivenToRest = 0.5;  // of the hold: before, what moves may still swing
 
 /// The forces as they should be, and the largest on the way.
-struct Expected {
+struct AtRest {
   std::string what;
   std::vector<Range> newton;  // of each tool
   std::vector<Vec3> force;    // of each tool; empty: only its size is known
@@ -78,13 +78,13 @@ Run more_slowly(Trial trial, const Column& column) {
   return follow(trial, column, trial.paths, false);
 }
 
-Expected closed_form(const std::string& what, std::size_t tools, const Range& range) {
+AtRest closed_form(const std::string& what, std::size_t tools, const Range& range) {
   return {what, std::vector<Range>(tools, range), {}, range.most};
 }
 
 /// From the run of a truth.
-Expected forces_of(const Run& run, const Trial& trial) {
-  Expected expected{"", {}, {}, trial.times * trial.most * run.max_newton};
+AtRest forces_of(const Run& run, const Trial& trial) {
+  AtRest expected{"", {}, {}, trial.times * trial.most * run.max_newton};
   for (const Vec3& force : run.last) {
     const double newton = trial.times * force.norm();
     expected.newton.push_back({newton, trial.most * newton});
@@ -93,12 +93,12 @@ Expected forces_of(const Run& run, const Trial& trial) {
   return expected;
 }
 
-Expected expected_of(const Trial& trial, const Column& column) {
+AtRest expected_of(const Trial& trial, const Column& column) {
   const std::size_t tools = trial.paths.size();
   if (trial.rendered && !column.is_placed())
     return closed_form("closed form: the stiffness of held vertices x depth", tools, *trial.rendered);
   if (trial.no_rest_unbent && !column.row->deforms() && column.row->moves) {
-    Expected none = closed_form("none: there is no place to rest", tools, {0, 1e300});
+    AtRest none = closed_form("none: there is no place to rest", tools, {0, 1e300});
     none.settled = false;
     none.impossible = true;
     return none;
@@ -109,7 +109,7 @@ Expected expected_of(const Trial& trial, const Column& column) {
   }
   const Truth truth = truth_of(trial, column);
   const Run run = truth.follow(truth.trial.paths);
-  Expected expected = forces_of(run, trial);
+  AtRest expected = forces_of(run, trial);
   expected.what = truth.what;
   expected.settled = run.finite && !run.pressed_flagged && !(trial.path_matters && run.flagged > 0);
   if (!expected.settled) expected.what += ": flagged, so that there is no error to tell";
@@ -117,7 +117,7 @@ Expected expected_of(const Trial& trial, const Column& column) {
   return expected;
 }
 
-double error_of(const std::vector<Vec3>& force, const Expected& expected) {
+double error_of(const std::vector<Vec3>& force, const AtRest& expected) {
   double error = 0;
   for (std::size_t k = 0; k < force.size(); ++k) {
     const Range& range = expected.newton[k];
@@ -132,7 +132,7 @@ double error_of(const std::vector<Vec3>& force, const Expected& expected) {
 /// What the truth finds where its tools come from a little aside, if it ends where `run` did then: two facets
 /// may both bear a tool, and the way to the end decides. A force that is far off, or none, is no such
 /// neighbour, whoever else finds it.
-std::optional<Expected> another_rest(const Run& run, const Trial& trial, const Column& column) {
+std::optional<AtRest> another_rest(const Run& run, const Trial& trial, const Column& column) {
   const Truth truth = truth_of(trial, column);
   for (int axis = 0; axis < 3; ++axis) {
     for (const double sign : {-1.0, 1.0}) {
@@ -143,7 +143,7 @@ std::optional<Expected> another_rest(const Run& run, const Trial& trial, const C
         path.push_back({(end.t + truth.trial.seconds) / 2, end.place});
       }
       const Run other = truth.follow(paths);
-      Expected there = forces_of(other, trial);
+      AtRest there = forces_of(other, trial);
       if (other.pressed_flagged || error_of(run.last, there) > kSamePlace) continue;
       there.what = fmt::format(
           "the tools have more than one place to rest, and this is another: {} ends there, too, where they "
@@ -156,7 +156,7 @@ std::optional<Expected> another_rest(const Run& run, const Trial& trial, const C
 }
 
 /// What is wrong at some time while the tools are there, unflagged; nothing: all is well.
-std::string wrong_on_the_way(const Run& run, const Trial& trial, const Expected& expected) {
+std::string wrong_on_the_way(const Run& run, const Trial& trial, const AtRest& expected) {
   const double until = run.held.back().t;
   const double scale = std::max(expected.newton.front().least, kSmallest);
   for (const Run::Held& held : run.held) {
@@ -180,7 +180,7 @@ std::string wrong_on_the_way(const Run& run, const Trial& trial, const Expected&
 
 /// Of a model that is at rest at every instant: what it finds on the way, where the same way in finer steps
 /// finds something else.
-std::string wrong_between(const Run& run, const Trial& trial, const Expected& expected) {
+std::string wrong_between(const Run& run, const Trial& trial, const AtRest& expected) {
   if (!expected.slower) return {};
   const std::vector<Run::Held>& right = expected.slower->held;
   const double scale = std::max(expected.newton.front().least, kSmallest);
@@ -200,7 +200,7 @@ std::string wrong_between(const Run& run, const Trial& trial, const Expected& ex
 }
 
 /// What is wrong of one run, or nothing.
-std::string wrong_of(const Run& run, const Trial& trial, const Expected& expected) {
+std::string wrong_of(const Run& run, const Trial& trial, const AtRest& expected) {
   if (run.wildest > kAbsurd * expected.most + kSmallest)
     return fmt::format("{:.3g} N without a flag; the reference has {:.3g} N at most", run.wildest,
                        expected.most);
@@ -210,12 +210,12 @@ std::string wrong_of(const Run& run, const Trial& trial, const Expected& expecte
   return wrong.empty() ? wrong_between(run, trial, expected) : wrong;
 }
 
-Verdict judge_one(const Run& run, const Trial& trial, const Column& column, const Expected& expected) {
+Verdict judge_one(const Run& run, const Trial& trial, const Column& column, const AtRest& expected) {
   Verdict verdict{"stable", "", {}, run.max_newton, expected.what};
   if (!run.finite)
     return {"exploded", "a force, tangent or position that is not finite", {}, {}, expected.what};
   if (expected.settled) verdict.error_percent = 100 * error_of(run.last, expected);
-  std::optional<Expected> remote;
+  std::optional<AtRest> remote;
   const double error = verdict.error_percent.value_or(0) / 100;
   const double report_why = trial.bound == kBound ? kReportWhy : trial.bound;
   if (!run.pressed_flagged && error > report_why && error < trial.other_rest && column.row->deforms() &&
@@ -249,7 +249,7 @@ int rank(const Verdict& verdict) {
 Verdict judge(const std::vector<Run>& runs, const Trial& trial, const Column& column) {
   if (trial.must_refuse && column.row->deforms())
     return {"wrong", "accepted, though nothing holds it from turning", {}, runs.front().max_newton, ""};
-  Expected expected;
+  AtRest expected;
   try {
     expected = expected_of(trial, column);
   } catch (const Error& e) {
@@ -263,7 +263,7 @@ Verdict judge(const std::vector<Run>& runs, const Trial& trial, const Column& co
   Trial locked = trial;
   locked.refer = {};
   locked.refers_to = "with elements that lock";
-  std::optional<Expected> of_locked;
+  std::optional<AtRest> of_locked;
   if (runs.front().locks) of_locked = expected_of(locked, column);
   Verdict worst;
   for (std::size_t i = 0; i < runs.size(); ++i) {
