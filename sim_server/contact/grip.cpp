@@ -20,6 +20,13 @@ std::vector<int> corners_of(std::span<const Triangle> triangles) {
   return all;
 }
 
+/// The rotation by the least angle that takes one unit vector to another; none to its opposite.
+Quat least_turn(const Vec3& from, const Vec3& to) {
+  const double w = 1 + from.dot(to);
+  const Vec3 v = from.cross(to);
+  return w < 1e-9 ? Quat::Identity() : Quat(w, v.x(), v.y(), v.z()).normalized();
+}
+
 }  // namespace
 
 Grip::Grip(const ToolSettings& tool, std::span<const Vec3> rest, std::span<const Triangle> touchable,
@@ -27,7 +34,6 @@ Grip::Grip(const ToolSettings& tool, std::span<const Vec3> rest, std::span<const
     : buttons_(tool.grasp_buttons),
       reach_(kReach * tool.shape.radius),
       max_nodes_(static_cast<std::size_t>(std::min(max_nodes, kMaxVertices))),
-      turns_(!tool.shape.trocar),
       touchable_(corners_of(touchable)) {
   vertices_.reserve(max_nodes_);
   offsets_.reserve(max_nodes_);
@@ -40,6 +46,7 @@ Grip::Grip(const ToolSettings& tool, std::span<const Vec3> rest, std::span<const
   misfit_.resize(3 * static_cast<Eigen::Index>(max_nodes_));
   spread_.resize(3 * static_cast<Eigen::Index>(max_nodes_), 3);
   stiffness_.resize(max_nodes_);
+  if (tool.shape.trocar) pivot_ = tool.shape.trocar->pivot_W;
   if (!tool.grasp_place) return;
   close(*tool.grasp_place, rest);
   closed_at_.reset();  // by the first pose
@@ -63,7 +70,7 @@ void Grip::change_surface(std::span<const Triangle> touchable, const std::functi
 
 void Grip::close(const ToolPose& pose, std::span<const Vec3> positions) noexcept {
   closed_ = true;
-  closed_at_ = pose.q_W;
+  closed_at_ = pose;
   for (const int vertex : touchable_) {
     const Vec3 offset = positions[vertex] - pose.p_W;
     if (offset.norm() > reach_) continue;
@@ -85,9 +92,36 @@ void Grip::open() noexcept {
   offsets_.clear();
 }
 
-Vec3 Grip::offset(std::size_t held, const Quat& q_W) const {
-  if (!closed_at_ || closed_at_->coeffs() == q_W.coeffs()) return offsets_[held];
-  return q_W * (closed_at_->conjugate() * offsets_[held]);
+Vec3 Grip::offset(std::size_t held, const ToolPose& pose) const {
+  const Quat turn = turned(pose);
+  return turn.coeffs() == Quat::Identity().coeffs() ? offsets_[held] : Vec3(turn * offsets_[held]);
+}
+
+/// What the tool has turned by since the jaws closed.
+Quat Grip::turned(const ToolPose& pose) const {
+  if (!turns_ || !closed_at_) return Quat::Identity();
+  if (pivot_) return least_turn(axis(*closed_at_), axis(pose));
+  const Quat& from = closed_at_->q_W;
+  return from.coeffs() == pose.q_W.coeffs() ? Quat::Identity() : Quat(pose.q_W * from.conjugate());
+}
+
+/// Column k: the turn (rad) per motion along axis k (m), of a shaft that pivots; zero of other tools. With a
+/// its axis and a0 that at which the jaws closed, the least turn goes on by a x da - a (a0 x a) . da / (1 +
+/// a0 . a).
+Mat3 Grip::turn_of_motion(const ToolPose& pose) const {
+  if (!pivot_ || !turns_ || !closed_at_) return Mat3::Zero();
+  const Vec3 a = axis(pose), a0 = axis(*closed_at_), roll = -a0.cross(a) / (1 + a0.dot(a));
+  Mat3 turn;
+  for (int k = 0; k < 3; ++k) turn.col(k) = -(a.cross(Vec3::Unit(k)) + roll[k] * a);
+  return turn / (*pivot_ - pose.p_W).norm();
+}
+
+/// How far a held vertex goes per motion of the tool, that turns so.
+Mat3 Grip::offset_of_motion(std::size_t held, const ToolPose& pose, const Mat3& turn) const {
+  const Vec3 arm = offset(held, pose);
+  Mat3 moved = Mat3::Identity();
+  for (int k = 0; k < 3; ++k) moved.col(k) += turn.col(k).cross(arm);
+  return moved;
 }
 
 /// What is missing to the place of each vertex, into `misfit_`; the largest component.
@@ -96,7 +130,7 @@ double Grip::misfit(const ToolPose& pose, const ToolTissue& tissue, std::span<co
   double largest = 0;
   for (std::size_t i = 0; i < own.size(); ++i) {
     const Vec3 missing =
-        tip + offset(i, pose.q_W) - tissue.positions()[vertices_[i]] - contact_compliance_ * own[i].force;
+        tip + offset(i, pose) - tissue.positions()[vertices_[i]] - contact_compliance_ * own[i].force;
     misfit_.segment<3>(3 * static_cast<Eigen::Index>(i)) = missing;
     largest = std::max(largest, missing.cwiseAbs().maxCoeff());
   }
@@ -150,20 +184,25 @@ void Grip::solve(Eigen::Ref<Eigen::VectorXd> misfit) const noexcept {
   lower.adjoint().solveInPlace(misfit);
 }
 
-Mat3 Grip::tangent() noexcept {
+Mat3 Grip::tangent(const ToolPose& pose) noexcept {
   const std::size_t held = vertices_.size();
+  const Mat3 turn = turn_of_motion(pose);
   Mat3 sum = Mat3::Zero();
-  for (std::size_t i = 0; alone_ && i < held; ++i) sum -= stiffness_[i];
+  for (std::size_t i = 0; alone_ && i < held; ++i) {
+    const Mat3 moved = offset_of_motion(i, pose, turn);
+    sum -= moved.transpose() * stiffness_[i] * moved;
+  }
   if (alone_) return sum;
-  auto spread = spread_.topRows(3 * static_cast<Eigen::Index>(held));  // L^-1 E
-  for (Eigen::Index i = 0; i < spread.rows(); i += 3) spread.middleRows<3>(i).setIdentity();
+  auto spread = spread_.topRows(3 * static_cast<Eigen::Index>(held));  // L^-1 J
+  for (std::size_t i = 0; i < held; ++i)
+    spread.middleRows<3>(3 * static_cast<Eigen::Index>(i)) = offset_of_motion(i, pose, turn);
   factor_.triangularView<Eigen::Lower>().solveInPlace(spread);
   return -spread.transpose() * spread;
 }
 
 Grip::Pull Grip::pull(const ToolPose& pose, ToolTissue tissue) {
-  const bool turns = turns_ && tissue.traits().turns;
-  if (!closed_at_ || !turns) closed_at_ = pose.q_W;
+  turns_ = tissue.traits().turns;
+  if (!closed_at_) closed_at_ = pose;
   const std::size_t held = vertices_.size();
   const auto size = 3 * static_cast<Eigen::Index>(held);
   const std::span<VertexLoad> own = tissue.loads_on(vertices_);
@@ -180,9 +219,13 @@ Grip::Pull Grip::pull(const ToolPose& pose, ToolTissue tissue) {
   }
   for (std::size_t i = 0; i < held; ++i) {
     pull.force -= own[i].force;
-    if (turns) pull.torque -= offset(i, pose.q_W).cross(own[i].force);
+    if (turns_) pull.torque -= offset(i, pose).cross(own[i].force);
   }
-  if (pull.converged) pull.tangent = tangent();
+  if (pivot_) {  // at the tip, by the work; what else turns the shaft, the wall bears
+    pull.force += turn_of_motion(pose).transpose() * pull.torque;
+    pull.torque.setZero();
+  }
+  if (pull.converged) pull.tangent = tangent(pose);
   return pull;
 }
 

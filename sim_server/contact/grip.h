@@ -10,14 +10,16 @@
 namespace palpate::sim {
 
 /// Tissue in the jaws of a tool: vertices of the surface attached to it both ways, each at the offset from
-/// the tool centre that it had when the jaws closed, which turns with the tool (but on a shaft that pivots,
-/// whose orientation the device does not set). With C the model's compliance at these m vertices, c_t
-/// the tool's, and E = (I ... I)^T, the loads f on the tissue hold
+/// the tool centre that it had when the jaws closed, which turns with the tool. With C the model's compliance
+/// at these m vertices, c_t the tool's, and E = (I ... I)^T, the loads f on the tissue hold
 ///   free + C f = E p + offsets - c_t E E^T f
-/// and the tool feels F = -E^T f and the torque -sum of offset x f about its centre, with the exact tangent
-/// dF/dp = -E^T (C + c_t E E^T)^-1 E at a fixed orientation. Newton's method:
-/// one round where the tissue is linear. Only set-up allocates; what the model throws passes through. One
-/// thread.
+/// and the tool feels F = -J^T f, with the tangent dF/dp = -J^T (C + c_t E E^T)^-1 J, where J dp is how the
+/// offsets go where the tool goes by dp. A tool whose orientation the device sets has J = E, and feels the
+/// torque -sum of offset x f about its centre. A shaft that pivots turns with its tip: by the least turn of
+/// its axis since the jaws closed, as the device does not say how it rolls. What turns the tissue then acts
+/// at the tip as the force that does the same work (the tangent leaves out how J changes, which is of order f
+/// r / L^2, with r the radius of the jaws and L from tip to pivot). Newton's method: one round where the
+/// tissue is linear. Only set-up allocates; what the model throws passes through. One thread.
 class Grip {
  public:
   static constexpr double kFits = 1e-10;  ///< of its reach: largest error of a held vertex
@@ -43,8 +45,8 @@ class Grip {
   void open() noexcept;
   bool holds() const { return !vertices_.empty(); }
   std::span<const int> vertices() const { return vertices_; }
-  /// Returns the offset of one of them from the centre of the tool at an orientation, m.
-  Vec3 offset(std::size_t held, const Quat& q_W) const;
+  /// Returns the offset of one of them from the centre of the tool at `pose`, m.
+  Vec3 offset(std::size_t held, const ToolPose& pose) const;
   int max_vertices() const { return static_cast<int>(max_nodes_); }
 
   /// Force on the tool, N, torque about its centre, N m, and tangent, N/m; `vertices` 0: the jaws are empty.
@@ -65,14 +67,18 @@ class Grip {
   bool take_compliance(const ToolTissue& tissue);
   bool factor(const ToolTissue& tissue);
   void solve(Eigen::Ref<Eigen::VectorXd> misfit) const noexcept;
-  Mat3 tangent() noexcept;
+  Mat3 tangent(const ToolPose& pose) noexcept;
+  Vec3 axis(const ToolPose& pose) const { return (*pivot_ - pose.p_W).normalized(); }
+  Quat turned(const ToolPose& pose) const;
+  Mat3 turn_of_motion(const ToolPose& pose) const;
+  Mat3 offset_of_motion(std::size_t held, const ToolPose& pose, const Mat3& turn) const;
 
   std::uint16_t buttons_;
   double reach_;  // m from the tool centre
   std::size_t max_nodes_;
-  bool turns_;  // with the tool
-  std::optional<Quat>
-      closed_at_;  // the orientation of the tool when the jaws closed; of a tool not placed: none
+  std::optional<Vec3> pivot_;          // of a shaft that turns about it, m
+  bool turns_ = true;                  // some models have tissue that no tool turns
+  std::optional<ToolPose> closed_at_;  // the pose when the jaws closed; of a tool not placed: none
   bool pressed_ = false, closed_ = false;
   std::vector<int> touchable_, vertices_;
   std::vector<Vec3> offsets_;  // then, m

@@ -135,7 +135,7 @@ class ToolContact {
   bool holds() const { return grip_ && grip_->holds(); }
   /// The vertices in its jaws, and from `place` to where each is held, m; of a tool that holds some.
   std::span<const int> held_vertices() const { return grip_->vertices(); }
-  Vec3 held_offset(std::size_t held) const { return grip_->offset(held, now_.place.q_W); }
+  Vec3 held_offset(std::size_t held) const { return grip_->offset(held, now_.place); }
   int max_held() const { return grip_ ? grip_->max_vertices() : 0; }
   /// True if it releases tissue at the next `advance_to`.
   bool opens() const { return grip_ && grip_->opens(); }

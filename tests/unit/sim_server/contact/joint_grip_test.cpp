@@ -41,6 +41,7 @@ struct Body {
 /// places of tools are displaced by `displaced` (m). `on`: only those within `within` of this place count.
 struct Wrench {
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+  double energy = 0;  // J, of the body
 };
 Wrench displacing(const Body& body, const Scene& scene, const std::function<Vec3(const Vec3&)>& displaced,
                   const Vec3& on, double within) {
@@ -64,7 +65,7 @@ Wrench displacing(const Body& body, const Scene& scene, const std::function<Vec3
   }
   const Eigen::MatrixXd compliance = body.factor.solve(loads)(held, Eigen::all);
   const Eigen::VectorXd forces = compliance.llt().solve(u);
-  Wrench sum;
+  Wrench sum{.energy = 0.5 * forces.dot(u)};
   for (std::size_t i = 0; i < places.size(); ++i) {
     if ((places[i] - on).norm() > within) continue;
     const Vec3 force = forces.segment<3>(3 * static_cast<Eigen::Index>(i));
@@ -127,4 +128,53 @@ TEST_CASE("grip: jaws that turn turn what they hold, and bear its torque, as the
   CHECK((turned[0].force + right.force).norm() < 1e-3 * right.torque.norm() / kRadius);
   // A tool that turns back, and one that never turned, bear none.
   CHECK(block.step(at(placed), kDt)[0].torque.norm() < 1e-9);
+}
+
+TEST_CASE("grip: jaws on a trocar turn what they hold with the shaft, and the tip bears the work of that") {
+  Scene scene = held_twice("quasi_static", 0.014, 0.015);
+  scene.tools.resize(1);
+  const Vec3 at = *scene.tools[0].grasp_place, pivot = at + Vec3(0.005, 0.02, -0.01);
+  scene.tools[0].shape.trocar = Tool::Trocar{pivot, 0.002};
+  Simulation block(scene, test::soft_block(Vec3(0.03, 0.015, 0.02), {12, 6, 8}));
+  const Body body(block.mesh(), scene);
+  // The least turn from one axis to the other, about their common normal.
+  const auto turn = [&](const Vec3& p) {
+    const Vec3 before = pivot - at, after = pivot - p, normal = before.cross(after);
+    const double angle = std::atan2(normal.norm(), before.dot(after));
+    return Mat3(
+        Eigen::AngleAxisd(angle, normal.norm() > 0 ? Vec3(normal.normalized()) : Vec3(Vec3::UnitX())));
+  };
+  const auto held_at = [&](const Vec3& p) {
+    const Mat3 turned = turn(p);
+    return displacing(
+        body, scene, [&](const Vec3& x) -> Vec3 { return p + turned * (x - at) - x; }, at, kReach);
+  };
+  const auto force_at = [&](const Vec3& p) {
+    Vec3 slope;
+    constexpr double kStep = 1e-6;  // m; the energy is all but quadratic
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 aside = kStep * Vec3::Unit(k);
+      slope[k] = (held_at(p + aside).energy - held_at(p - aside).energy) / (2 * kStep);
+    }
+    return Vec3(-slope);
+  };
+  const auto step_to = [&](const Vec3& p) {
+    return block.step(std::vector<ToolInput>{{.pose = ToolPose(p)}}, kDt)[0];
+  };
+  step_to(at);
+  for (const Vec3& moved : {Vec3(0.004, 0.001, 0.003), Vec3(-0.006, 0.002, 0.004)}) {
+    const Vec3 p = at + moved, right = force_at(p);
+    const ToolAnswer found = step_to(p);
+    CAPTURE(right.transpose(), found.force.transpose(), held_at(p).force.transpose());
+    CHECK_FALSE(found.flagged);
+    CHECK((found.force - right).norm() < 1e-3 * right.norm());
+    CHECK((found.force + held_at(p).force).norm() > 0.01 * right.norm());  // what turns it counts
+    CHECK(found.torque.isZero(0));
+    constexpr double kAside = 1e-5;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3 slope =
+          (force_at(p + kAside * Vec3::Unit(k)) - force_at(p - kAside * Vec3::Unit(k))) / (2 * kAside);
+      CHECK((found.tangent.col(k) - slope).norm() < 0.02 * found.tangent.norm());
+    }
+  }
 }
