@@ -44,6 +44,21 @@ TEST_CASE("robustness study: where two facets may bear a tool, a cell says that 
   CHECK(row_of("pinched", "quasi_static").at("reason") == "");
 }
 
+TEST_CASE(
+    "robustness study: two tools pinch, hold and press, and hand over as Newton's third law and statics "
+    "say") {
+  for (const char* const model : {"quasi_static", "reduced"}) {
+    const auto pinched = row_of("pinch_6_mm_fast", model);
+    CHECK(pinched.at("outcome") == "stable");
+    CHECK(pinched.at("error_percent").get<double>() < 1e-6);  // the body is its own mirror image
+    const auto handed = row_of("hand_over", model);
+    CHECK(handed.at("outcome") == "stable");
+    CHECK(handed.at("error_percent").get<double>() < 0.01);
+    CHECK(row_of("grasp_and_press", model).at("error_percent").get<double>() < 0.01);
+  }
+  CHECK(row_of("pinch_6_mm", "rigid").at("outcome") == "not_applicable");
+}
+
 TEST_CASE("robustness study: a refused cell says what to change, a flagged one how often it was") {
   const auto refused = row_of("hard", "tensor_mass");
   CHECK(refused.at("outcome") == "refused");

@@ -106,8 +106,10 @@ using Judge = Verdict (*)(const Setting&, const Column&);
 void add_rows(std::vector<Case>& rows, const std::string& name, const std::string& what, Judge judge,
               const std::vector<Setting>& settings, bool quick = false);
 
-/// Jaws, friction and work (`robustness_grips.cpp`); supports that move (`robustness_supports.cpp`).
+/// Jaws, friction and work (`robustness_grips.cpp`); two tools on the same tissue
+/// (`robustness_two_tools.cpp`); supports that move (`robustness_supports.cpp`).
 void add_grips(std::vector<Case>& rows);
+void add_two_tools(std::vector<Case>& rows);
 void add_supports(std::vector<Case>& rows);
 
 /// A row: refused where `judge` throws `Error`.

@@ -196,6 +196,7 @@ std::vector<Case> world_cases() {
   add_rows(rows, "trocar_far", "a pivot at 10 m", trocar_far, {{}});
   add_rows(rows, "trocar_lever", "a shaft on the block", trocar_lever, {{}, thin, quick}, true);
   add_grips(rows);
+  add_two_tools(rows);
   add_supports(rows);
   return rows;
 }
