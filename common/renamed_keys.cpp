@@ -24,6 +24,7 @@ constexpr std::array kInReports{Renamed{"felt", "rendered"},
                                 Renamed{"what_to_look_at", "what_to_check"},
                                 Renamed{"tetrahedra_left", "tetrahedra_remaining"},
                                 Renamed{"farthest_m", "furthest_m"},
+                                Renamed{"parted_m2", "separated_m2"},
                                 Renamed{"mean_parted_distance_m", "mean_separated_distance_m"},
                                 Renamed{"felt_error_percent", "rendered_error_percent"}};
 

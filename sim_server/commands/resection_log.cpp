@@ -162,7 +162,7 @@ Json resection_report(const Simulation& simulation) {
           {"elastic_J", all.elastic},
           {"kinetic_J", all.kinetic},
           {"momentum_Ns", {all.momentum.x(), all.momentum.y(), all.momentum.z()}},
-          {"parted_m2", all.separated_area},
+          {"separated_m2", all.separated_area},
           {"mean_separated_distance_m", known(away.mean_separated)},
           {"vertices_slid", all.slides},
           {"vertices_split", all.splits},
