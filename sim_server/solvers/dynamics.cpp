@@ -18,8 +18,8 @@ constexpr double kNegligibleDisplacement = 1e-9, kRemote = 1e-4, kOffset = 1e-7;
 // Relative residuals. Where the last trial step of a step leaves more than the first, velocities mean
 // nothing, and the step ends at rest: each step from there lowers the energy, however far Newton's method is
 // from balance. Where no more than the second is left, and loads change by no more, the linearisation is
-// trusted without a line search.
-constexpr double kAdrift = 0.1, kTrusted = 0.1;
+// accepted without a line search.
+constexpr double kAdrift = 0.1, kNoSearch = 0.1;
 
 /// Of a linear law one factor serves for ever, unless the body is cut.
 bool one_factor_serves(const Solid& solid, const DynamicsSettings& settings) {
@@ -52,7 +52,7 @@ void Dynamics::set_state(std::vector<Vec3> x, std::span<const Vec3> v) {
 
 void Dynamics::start_step(double h) {
   trial_residual_ = 0;
-  trusted_.resize(0);
+  unsearched_.resize(0);
   iterated_ = false;
   at_predictor_ = true;
   motion_.start_step(h);
@@ -82,19 +82,19 @@ Residual Dynamics::evaluate(std::span<const Vec3> external) {
 }
 
 /// By `d` (m) from the trial point without a line search.
-void Dynamics::trust(const Eigen::VectorXd& d) {
-  trusted_from_.assign(motion_.position().begin(), motion_.position().end());
-  trusted_ = d;
+void Dynamics::move_without_search(const Eigen::VectorXd& d) {
+  unsearched_from_.assign(motion_.position().begin(), motion_.position().end());
+  unsearched_ = d;
   motion_.move_by(d);
 }
 
-/// The residual where the last move led. One that was trusted, and led to where it would not have been, is
-/// searched along instead.
+/// The residual where the last move led. One that was accepted without a line search, and led to where it
+/// would not have been, is searched along instead.
 Residual Dynamics::evaluate_move(std::span<const Vec3> external) {
   Residual residual = evaluate(external);
-  const Eigen::VectorXd d = std::exchange(trusted_, {});
-  if (is_linear() || d.size() == 0 || residual.relative <= kTrusted) return residual;
-  motion_.move_to(trusted_from_);
+  const Eigen::VectorXd d = std::exchange(unsearched_, {});
+  if (is_linear() || d.size() == 0 || residual.relative <= kNoSearch) return residual;
+  motion_.move_to(unsearched_from_);
   search_along(d, motion_.residual(external), external);
   return evaluate(external);
 }
@@ -118,10 +118,10 @@ double Dynamics::newton_iteration(std::span<const Vec3> external, double toleran
   if (residual.relative <= tolerance) return residual.relative;
   if (!factor_.prepare(motion_, residual, previous, factored)) return 0;
   const Eigen::VectorXd d = search_direction(residual, external);
-  if (damped_ || residual.relative > kTrusted) {
+  if (damped_ || residual.relative > kNoSearch) {
     search_along(d, residual, external);
   } else {
-    trust(d);
+    move_without_search(d);
     trial_residual_ = residual.relative;
   }
   return residual.relative;
@@ -187,13 +187,13 @@ void Dynamics::limit_predictor(std::span<const Vec3> external) {
 
 void Dynamics::apply_increment(const Eigen::VectorXd& d, std::span<const Vec3> external) {
   if (!d.allFinite()) return;
-  trusted_.resize(0);
+  unsearched_.resize(0);
   if (is_linear()) return motion_.move_by(d);
   double squared = 0;
   for (std::size_t i = 0; i < motion_.last_external().size(); ++i)
     squared += (external[i] - motion_.last_external()[i]).squaredNorm();
-  if (!damped_ && relative_residual_ <= kTrusted &&
-      std::sqrt(squared) <= kTrusted * motion_.last_force_scale())
+  if (!damped_ && relative_residual_ <= kNoSearch &&
+      std::sqrt(squared) <= kNoSearch * motion_.last_force_scale())
     return motion_.move_by(d);
   search_along(d, motion_.residual(external), external);
 }

@@ -88,9 +88,9 @@ class Dynamics {
   /// of a stale factor.
   void loads_changed() {
     factor_.loads_changed();
-    trusted_.resize(0);
+    unsearched_.resize(0);
   }
-  /// Moves the trial point by the increment `d` (m, by unknowns) that a linearisation foretells of these
+  /// Moves the trial point by the increment `d` (m, by unknowns) that a linearisation predicts of these
   /// external forces (nodes, N); by less where the forces there would throw the body back.
   void apply_increment(const Eigen::VectorXd& d, std::span<const Vec3> external);
 
@@ -117,7 +117,7 @@ class Dynamics {
   bool is_linear() const { return linear_; }
   Residual evaluate(std::span<const Vec3> external);
   Residual evaluate_move(std::span<const Vec3> external);
-  void trust(const Eigen::VectorXd& d);
+  void move_without_search(const Eigen::VectorXd& d);
   void return_();
   void continue_with(std::span<const NodeMass> masses);
   double newton_iteration(std::span<const Vec3> external, double tolerance);
@@ -132,8 +132,8 @@ class Dynamics {
   double size_;  // of the body, m
   NewtonFactor factor_;
   double relative_residual_ = 0;  // that the last iteration found
-  Eigen::VectorXd trusted_;       // m, the last move, if it was without a line search; else empty
-  std::vector<Vec3> trusted_from_;
+  Eigen::VectorXd unsearched_;    // m, the last move, if it was without a line search; else empty
+  std::vector<Vec3> unsearched_from_;
   bool iterated_ = false;      // in this step, to an end
   double trial_residual_ = 0;  // relative, at the last trial step of this step; 1: none was accepted
   bool at_predictor_ = false;  // no iteration of this step has been
