@@ -93,7 +93,7 @@ std::string built_text(const Explanation& explanation) {
 }
 
 std::string omitted_text(const Explanation& explanation) {
-  std::vector<Row> rows{{"left out", "why", "saves", "saves set-up", "saves a step", ""}};
+  std::vector<Row> rows{{"omitted", "why", "saves", "saves set-up", "saves a step", ""}};
   for (const Omitted& row : explanation.omitted) {
     rows.push_back({row.what, row.why, or_dash(row.bytes, bytes_text), or_dash(row.setup_ms, setup_text),
                     or_dash(row.step_ms, step_text), row.note});
@@ -164,7 +164,7 @@ std::string why_text(const Explanation& explanation, const std::string& part) {
   for (const Omitted& row : explanation.omitted) {
     known.push_back(row.what);
     if (row.what != part) continue;
-    return fmt::format("{} is left out\n  by {}\n  saves {}, set-up {}, a step {} ({})\n", part,
+    return fmt::format("{} is omitted\n  by {}\n  saves {}, set-up {}, a step {} ({})\n", part,
                        line_at(row.why), or_dash(row.bytes, bytes_text), or_dash(row.setup_ms, setup_text),
                        or_dash(row.step_ms, step_text), row.note);
   }
@@ -227,7 +227,7 @@ Command explain_command() {
             {"--json", "Write the same to this JSON file", &options->json}},
            cache_options(options->cache),
            {{"--why",
-             "Only this part, built or left out: which line of the scene says so, and what it costs or saves",
+             "Only this part, built or omitted: which line of the scene says so, and what it costs or saves",
              &options->why,
              {.value_name = "PART"}},
             {"--steps",

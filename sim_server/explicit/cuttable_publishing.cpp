@@ -61,7 +61,7 @@ std::vector<MemoryPart> CuttableMotion::memory() const {
          fmt::format("near their tools, {:.2g} s after the last cut{}{}", publisher_->delay(),
                      publisher_->failure().empty() ? "" : "; not by now: ", publisher_->failure())});
   if (body_->rest)
-    parts.push_back({"condensed rest", body_->rest->bytes(),
+    parts.push_back({"condensed part", body_->rest->bytes(),
                      fmt::format("{} parts, {} modes, {} vertices at the border, {} that tools reach",
                                  body_->rest->parts(), body_->rest->modes(), body_->rest->border(),
                                  body_->rest->vertices().size())});

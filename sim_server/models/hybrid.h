@@ -12,7 +12,7 @@ namespace palpate::sim {
 
 /// Extent of the part in motion, and modes of the condensed part.
 struct HybridSettings {
-  int condensed_modes = ClientModes::kDefault;  ///< of the condensed rest, that swing, [0, 1000]
+  int condensed_modes = ClientModes::kDefault;  ///< of the condensed part, that swing, [0, 1000]
   int layers = 1;                               ///< of tetrahedra in motion around what can be cut, [0, 100]
 
   static constexpr std::array<std::string_view, 2> kKeys{"layers", "condensed_modes"};

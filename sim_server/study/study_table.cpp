@@ -125,7 +125,7 @@ std::string to_text(const StudyResult& result) {
       "reference {}; {} differs from it by {:.2g} % in force, {:.2g} % in shape\n\n"
       "  {:<9} {:<58} {:>10} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>8}\n",
       result.reference, result.check, result.own.force, result.own.surface, "axis", "case", "tetrahedra",
-      "force %", "worst %", "surface %", "felt %", "step ms", "set-up s", "peak MB");
+      "force %", "worst %", "surface %", "rendered %", "step ms", "set-up s", "peak MB");
   if (result.jumps) text.insert(text.find('\n') + 1, unexplained_text(*result.jumps) + "\n");
   for (const StudyRow& row : result.rows) {
     text += fmt::format(
@@ -152,7 +152,7 @@ std::string advice(const StudyResult& result, double budget_ms, const Scene& req
     return fmt::format("\nNo case takes {:g} ms a step or less; a coarser mesh (--mesh FILE) would.\n",
                        budget_ms);
   return fmt::format(
-      "\nWithin {:g} ms a step, {} is felt with the smallest error: {:.2g} %, at {:.2g} ms a step (99 "
+      "\nWithin {:g} ms a step, {} is rendered with the smallest error: {:.2g} %, at {:.2g} ms a step (99 "
       "of 100 within {:.2g}).\n\n{}",
       budget_ms, best->one.name(), best->errors.rendered.mean_percent, best->step_ms_p50, best->step_ms_p99,
       settings_of(*best, requested));

@@ -43,7 +43,7 @@ inline constexpr std::array kStages{
     StageRow{Stage::kTensors, "assembling the tensors", "tensors"},
     StageRow{Stage::kFrequency, "finding the highest frequency", "tensors"},
     StageRow{Stage::kCompliance, "computing compliance", "compliance"},
-    StageRow{Stage::kCondensed, "condensing what is not in motion", "condensed rest"},
+    StageRow{Stage::kCondensed, "condensing what is not in motion", "condensed part"},
 };
 
 constexpr const StageRow& row_of(Stage stage) {

@@ -34,7 +34,7 @@ TEST_CASE("explain names the lines of the liver scene that ask for what it build
   for (const char* start : {"file", "[[fixed]]", "[material]", "model", "[[tool]]", "rate_hz"}) {
     CHECK(said.find(line(start)) != std::string::npos);
   }
-  for (const char* part : {"compliance", "stiffness matrix", "left out", "in contact", "state hash"}) {
+  for (const char* part : {"compliance", "stiffness matrix", "omitted", "in contact", "state hash"}) {
     CHECK(said.find(part) != std::string::npos);
   }
   const Json json = read_json(file);
