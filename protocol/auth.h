@@ -55,7 +55,7 @@ class Cookies {
   Secret secret_;
 };
 
-/// Bytes that nobody can foretell, from the operating system.
+/// Bytes that nobody can predict, from the operating system.
 void fill_randomly(std::span<std::byte> out) noexcept;
 
 template <class T>

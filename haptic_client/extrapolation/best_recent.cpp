@@ -7,7 +7,7 @@ namespace palpate::client {
 namespace {
 constexpr double kSamples = 32;  // that the mean error is of
 constexpr double kBetter = 0.8;  // of the error of the rendered law
-constexpr double kLead = 1.03;   // of the largest force lately: what a law may foresee where the tool cuts
+constexpr double kLead = 1.03;   // of the largest force lately: what a law may predict where the tool cuts
 }  // namespace
 
 BestRecent::BestRecent(std::vector<Law> laws) : laws_(std::move(laws)), chosen_(laws_.size() - 1) {

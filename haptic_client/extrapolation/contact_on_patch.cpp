@@ -95,7 +95,7 @@ double ContactOnPatch::near(const Surface& surface) const noexcept {
 
 ContactSolver::Effort ContactOnPatch::effort(const Surface& surface) const noexcept {
   const double depth = std::max(state_.depth / surface.tool.radius, kLeastDepth);
-  // Where the increment before foresees where the surface goes, one look at it is mostly enough.
+  // Where the increment before predicts where the surface goes, one look at it is mostly enough.
   return {.max_iterations = 30,
           .tolerance = std::min(accuracy_.tolerance * depth, accuracy_.most_tolerance),
           .expected = 1e-3,

@@ -75,7 +75,7 @@ std::optional<Vec3> LocalContact::stored(Time t, const Vec3& p_rest) const noexc
   return force.dot(rendered->force) > 0 ? force : Vec3(Vec3::Zero());
 }
 
-/// What the server says is `right` the model takes for `local`, somewhere.
+/// Updates the correction factor: the server found the force `right` where the model found `local`.
 void LocalContact::learn_factor(const Vec3& right, const Vec3& local) noexcept {
   largest_ = std::max(largest_, right.norm());
   const double doubt = kDoubt * largest_ * kDoubt * largest_;  // a light touch tells little of the factor

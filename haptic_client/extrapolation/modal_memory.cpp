@@ -7,12 +7,12 @@
 
 namespace palpate::client {
 namespace {
-constexpr Time kStep = std::chrono::microseconds(500);   // what remains to a tick is by Taylor's series
-constexpr double kMaxSwing = 0.2;                        // m: no organ swings so far
-constexpr double kSamePlace = 1e-3;                      // m
-constexpr Time kTrend = std::chrono::milliseconds(100);  // so long a trend is believed
-constexpr double kOther = 0.8;                           // of the larger load: a change by more is no trend
-constexpr Time kTrendBase = std::chrono::milliseconds(20);  // and from samples so far apart, wholly
+constexpr Time kStep = std::chrono::microseconds(500);      // what remains to a tick is by Taylor's series
+constexpr double kMaxSwing = 0.2;                           // m: no organ swings so far
+constexpr double kSamePlace = 1e-3;                         // m
+constexpr Time kTrend = std::chrono::milliseconds(100);     // a trend is extrapolated no longer than this
+constexpr double kOther = 0.8;                              // of the larger load: a larger change is no trend
+constexpr Time kTrendBase = std::chrono::milliseconds(20);  // samples this far apart determine a trend
 }  // namespace
 
 ModalMemory::ModalMemory() = default;

@@ -233,7 +233,8 @@ void SurfacePublisher::start_body(const Tissue& tissue) {
   });
 }
 
-/// Where it will have gone halfway through the use of what is begun now, within the surface published now.
+/// Predicts where the tool will be halfway through the use of the surface that is started now, within the one
+/// that is published now.
 Vec3 SurfacePublisher::expected_place(const Tool& tool) const {
   if (!now_.surface) return tool.p_W;
   const Vec3 path = kLead * surface_steps_ * period_ * tool.v_W;
@@ -278,7 +279,7 @@ void SurfacePublisher::end() {
   }
 }
 
-/// The next that begins.
+/// Postpones the next attempt, twice as long after each failure.
 void SurfacePublisher::put_off(const std::exception& failure) {
   now_.failure = failure.what();
   now_.not_before = now_.step + (static_cast<long>(body_steps_) << std::min(now_.failures++, kMostPutOffs));

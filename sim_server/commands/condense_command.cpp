@@ -19,7 +19,7 @@ Command condense_command() {
                        &options->scene,
                        {.required = true}},
                       {"--out",
-                       "Folder to keep the result in; what it has already is not made again",
+                       "Folder for the result; parts that it already holds are not computed again",
                        &options->out,
                        {.required = true}},
                       {"--report", "Write times and memory to this JSON file", &options->report}},

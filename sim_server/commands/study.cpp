@@ -246,7 +246,8 @@ Command study_command() {
              "Motion of the tool: a CSV (t_s, x_m, y_m, z_m) (default: pressed, slid to and fro, lifted, 2 "
              "s)",
              &options.trajectory},
-            {"--budget-ms", "End with the case that is felt best at so many ms a step, as TOML",
+            {"--budget-ms",
+             "Report the case with the smallest rendered error within so many ms a step, as TOML",
              &options.budget_ms},
             {"--latency-ms",
              "Of the link, from the end of a step to its force in the client, ms",

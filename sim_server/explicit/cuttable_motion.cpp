@@ -116,7 +116,8 @@ FreeMotion CuttableMotion::restore(const std::any& state) {
   return {.positions = state_.free, .loaded = state_.positions, .moved = &state_.moved};
 }
 
-/// `modes` of the rest add at most so much, of squares; rad/s.
+/// Chooses the sub-step. `modes` (rad/s) bounds what the modes of the condensed part add to the frequency, in
+/// squares.
 void CuttableMotion::choose_sub_step(const ModelInputs& inputs, double modes) {
   const double longest = longest_sub_step(std::hypot(scaling_.frequency, modes), rayleigh_of(inputs.scene));
   instants_ = std::max(instants_of(inputs.scene.deformation, 1),
@@ -172,15 +173,15 @@ FreeMotion CuttableMotion::free_motion(double dt) noexcept {
   return {.positions = state_.free, .loaded = state_.positions, .moved = &state_.moved};
 }
 
-/// What the rest does on the border where both are by now.
+/// Updates the forces of the condensed part on the border, where both are by now.
 void CuttableMotion::follow() noexcept {
   body_->rest->observe(body_->motion.state.u, body_->motion.state.v);
   std::ranges::fill(state_.force, 0);
   body_->rest->follow(state_.force);
 }
 
-/// The rest goes to where the border takes it at the end of the sub-step, if loads on that stay as they are:
-/// what is loaded, and, seldomer, what else contact looks at; all of it where a step ends.
+/// Moves the condensed part with the border to the end of the sub-step, under constant loads on the border:
+/// its loaded vertices, less often the others that contact searches, and all of it where a step ends.
 void CuttableMotion::carry_rest() noexcept {
   const auto at = [&](const VertexLoad& load) {
     return Eigen::Map<Vec3>(body_->motion.state.u.data() +
@@ -226,7 +227,8 @@ void CuttableMotion::take_sub_step() noexcept {
   state_.changed = false;
 }
 
-/// What is shown of what is in motion, and what contact looks at of the rest: where a step ends, all of that.
+/// Updates the visible positions in motion, and those of the condensed part that contact searches: all of
+/// them where a step ends.
 void CuttableMotion::note_moved() noexcept {
   const std::vector<int>& seen = state_.instant == 0 ? state_.exposed : looked_at();
   state_.moved.assign(seen.begin(), seen.end());
@@ -238,7 +240,7 @@ void CuttableMotion::note_moved() noexcept {
   state_.moved_freely = state_.moved.size();
 }
 
-/// Where these, in motion, go free of loads.
+/// Updates the positions of these vertices, which are in motion, without loads.
 void CuttableMotion::update_free(std::span<const int> vertices) noexcept {
   for (const int vertex : vertices) {
     const auto v = static_cast<std::size_t>(vertex);
@@ -261,7 +263,7 @@ void CuttableMotion::become_free(std::span<const int> vertices) noexcept {
     state_.positions[static_cast<std::size_t>(vertex)] = state_.free[static_cast<std::size_t>(vertex)];
 }
 
-/// What is not in motion moves where it is pressed, and where it was; so does what contact begins to look at.
+/// Updates the condensed part where it is or was loaded, and where contact starts to search.
 void CuttableMotion::note_loaded() noexcept {
   for (; body_->rest && state_.watched < body_->rest->watched().size(); ++state_.watched)
     state_.moved.push_back(body_->rest->watched()[state_.watched]);
@@ -273,7 +275,7 @@ void CuttableMotion::note_loaded() noexcept {
   }
 }
 
-/// All else is where it is free.
+/// Sets all other vertices to their positions without loads.
 void CuttableMotion::apply_loads() noexcept {
   note_loaded();
   become_free(state_.loaded_vertices);

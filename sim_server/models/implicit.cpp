@@ -170,7 +170,7 @@ FreeMotion Implicit::motion() const {
           .carried = published_ ? supports_->positions() : std::span<const Vec3>()};
 }
 
-/// Moves all of the body by what the linearisation foretells of the loads that are new to it.
+/// Moves all of the body by what the linearisation predicts of the loads that are new to it.
 void Implicit::apply_new_loads() {
   if (loads_ == linearised_loads_) return;
   Eigen::VectorXd change = Eigen::VectorXd::Zero(dynamics_.dofs().count);

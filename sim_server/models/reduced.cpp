@@ -23,9 +23,9 @@ double Reduced::estimated_bytes(const Scene& scene, const MeshCounts& counts) {
   return body_bytes(counts, element, 1) + 3 * nodes_of(counts, element) * sizeof(double) * vectors;
 }
 
-/// As many as make steps that are short for the quickest mode, `w` rad/s, and for the error of the force;
-/// where that would be too many, one. In between contact chatters: what a held force leaves swinging, the
-/// next one has to answer.
+/// Returns how many instants make steps that are short for the fastest mode (`w`, rad/s) and for the error of
+/// the force; 1 where that exceeds 100. With a number in between contact chatters: each force answers what
+/// the last one left swinging.
 int Reduced::usual_instants(double period, double w) {
   constexpr double kStepTime = 1.25e-3, kShort = 1, kMost = 100,
                    kRounding = 1e-9;  // s; of 1 / w; both numbers
