@@ -26,7 +26,7 @@ const char* kernels_of_processor() {
   return nullptr;
 }
 
-/// Whether OpenBLAS is there, and took kernels that know neither AVX2 nor AVX-512.
+/// True if OpenBLAS is there, and took kernels that know neither AVX2 nor AVX-512.
 bool has_old_kernels() {
   constexpr std::array<std::string_view, 6> kOld{"Prescott",   "Core2",   "Penryn",
                                                  "Dunnington", "Nehalem", "Sandybridge"};

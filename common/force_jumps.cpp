@@ -107,7 +107,7 @@ std::optional<ForceJumps> SnapCounter::snaps() const {
   return all.of_peak();
 }
 
-/// Of the change within the last 1.5 ms to 1 ms.
+/// Returns the part of the change from 1.5 to 1 ms ago that the changes before and after do not explain, N.
 double SnapCounter::unexplained() const {
   const double share = static_cast<double>(within_) / static_cast<double>(around_);
   const Vec3 &before = back(2 * around_ + within_), &begin = back(around_ + within_), &end = back(around_),

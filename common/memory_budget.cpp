@@ -35,7 +35,7 @@ std::optional<double> number_after(const std::filesystem::path& file, std::strin
   return {};
 }
 
-/// What the limit of one control group leaves.
+/// Returns what the limit of one control group leaves.
 double remaining_in_group(const std::filesystem::path& folder) {
   const auto most = number_in(folder / "memory.max"), now = number_in(folder / "memory.current");
   if (!most || !now) return std::numeric_limits<double>::infinity();
@@ -51,7 +51,7 @@ std::string own_group(const std::filesystem::path& file) {
   return "/";
 }
 
-/// What `ulimit -v` leaves of addresses, with room for what libraries take as they are first used.
+/// Returns what `ulimit -v` leaves of addresses, with room for what libraries take as they are first used.
 double remaining_of_addresses(const std::filesystem::path& root) {
   constexpr double kLibraries = 3e8;  // bytes
   rlimit limit{};

@@ -55,8 +55,8 @@ void PromptTeam::start_helpers() noexcept {
   }
 }
 
-/// What was written before `open_` is there for whoever takes a part of it; nothing of it changes before all
-/// parts are done.
+/// Starts a job. What was written before `open_` is visible to whoever takes a part of it; nothing of it
+/// changes before all parts are done.
 void PromptTeam::begin(const Job& job, std::uint32_t parts) noexcept {
   job_ = job;
   undone_.store(parts, std::memory_order_relaxed);
@@ -94,7 +94,7 @@ bool PromptTeam::do_one(bool from_the_front) noexcept {
   }
 }
 
-/// For a job of another number than the `last`, or the end.
+/// Waits for a job of another number than the `last`, or for the end.
 void PromptTeam::wait_for_work(std::uint32_t last) noexcept {
   const auto came = [&] { return number_.load(std::memory_order_acquire) != last; };
   if (!poll_until(came, kAwake)) number_.wait(last, std::memory_order_acquire);

@@ -22,7 +22,7 @@ Json quantiles(const Histogram& histogram, double unit_ns) {
 
 namespace {
 
-/// What a path leads to, also where the last link dangles.
+/// Returns what a path leads to, also where the last link dangles.
 fs::path without_links(fs::path file) {
   constexpr int kMostLinks = 40;  // as Linux follows at most (ELOOP)
   std::error_code failed;

@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-/// Which device axis each axis of the world is, such as ["x", "-z", "y"].
+/// Returns which device axis each axis of the world is, such as ["x", "-z", "y"].
 Mat3 read_axes(const Config& config) {
   Mat3 axes = Mat3::Zero();
   const auto names = config.texts("axes", 3, {"x", "y", "z"});

@@ -23,7 +23,7 @@ namespace {
 constexpr const char* kWord = "palpate-key";
 constexpr std::size_t kMostKeys = 255;  // the number of a key is a byte of the header; 0 is none
 
-/// What two programs share must stay between them.
+/// Refuses a file that others can read: what two programs share must stay between them.
 void require_private(const std::filesystem::path& file) {
   struct stat status {};
   if (::stat(file.c_str(), &status) != 0)
@@ -60,7 +60,7 @@ Key read_line(const std::string& line, const std::string& where) {
   return {static_cast<std::uint8_t>(number), *bytes};
 }
 
-/// In one piece, and to the disk; else the file is removed.
+/// Writes it in one piece, and to the disk; else removes the file.
 void write_atomically(int descriptor, const std::string& text, const std::filesystem::path& file) {
   const bool written = ::write(descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
                        ::fsync(descriptor) == 0;

@@ -24,7 +24,7 @@ void put_u16(std::span<std::byte> out, std::size_t at, std::size_t value) {
   out[at + 1] = static_cast<std::byte>(value & 0xff);
 }
 
-/// What a link header carries: an EtherType and the bytes behind the header.
+/// The content of a link header: an EtherType and the bytes behind the header.
 struct Carried {
   std::uint16_t type;
   Bytes bytes;

@@ -56,7 +56,7 @@ bool LinkSimulator::gets_through(const Draws& draws, Time now) {
   return reason == nullptr;
 }
 
-/// When its last byte is on the line; nothing: it would wait too long for its first.
+/// Returns when its last byte is on the line; nothing: it would wait too long for its first.
 std::optional<Time> LinkSimulator::leaves(std::size_t bytes, Time now) {
   if (!(conditions_.bandwidth > 0)) return now;
   const Time begins = std::max(now, line_free_);

@@ -39,7 +39,7 @@ std::size_t ClientSession::write(const Message& message, std::span<std::byte> ou
   return write_sealed(next_header(), message, current_.keys.out, out);
 }
 
-/// Whether it is the answer to one of the newest Hellos: an older one may be captured and sent again.
+/// True if it is the answer to one of the newest Hellos: an older one may be captured and sent again.
 bool ClientSession::answers_lately(const Nonce& nonce, std::uint64_t attempt) const noexcept {
   return nonce == nonce_ && attempt <= attempts_ && attempt + kAnswered > attempts_;
 }

@@ -19,7 +19,7 @@ constexpr double kInexact = 1e-2;
 // radius.
 constexpr double kMargin = 4, kMinReach = 1e-3, kMaxReach = 0.05;
 
-/// Where the nodes are, displaced by `u`, in `places`, which has room for them.
+/// Writes where the nodes are, displaced by `u`, to `places`, which has room for them.
 void deform(std::span<const Vec3> free, const Eigen::Ref<const Eigen::VectorXd>& u,
             std::vector<Vec3>& places) {
   places.assign(free.begin(), free.end());
@@ -31,8 +31,8 @@ double margin_for(double change, const Tool& tool) noexcept {
   return std::clamp(kMargin * change, kMinReach * tool.radius, kMaxReach * tool.radius);
 }
 
-/// How much of the way to the next solution plain iteration goes: less where it swings, more where it creeps
-/// (towards a snap-through, say).
+/// The fraction of the way to the next solution that plain iteration goes: less where it swings, more where
+/// it creeps (towards a snap-through, say).
 class PlainStep {
  public:
   /// `onward`: the solution lies on the side to which the last step went.
@@ -151,7 +151,7 @@ double ContactSolver::along(Eigen::Index row, Eigen::Index nodes,
   return d.dot(relative) + (c.at_tip(d) - d).dot(tip);
 }
 
-/// How far the tip went over the surface at the place of a row in this increment.
+/// Returns how far the tip went over the surface at the place of a row in this increment.
 Vec3 ContactSolver::travel(Eigen::Index row) const {
   const Contact& c = contact_of(row);
   const MovedTool& tool = path_.tools[c.tool];
@@ -193,8 +193,8 @@ void ContactSolver::start_increment(const ContactPatch& patch, std::span<const T
   path_.was.assign(nodes.begin(), nodes.begin() + patch.nodes());
 }
 
-/// What each tool may touch, with the nodes and tips displaced by `u`, where things still move by `change`
-/// (m).
+/// Finds what each tool may touch, with the nodes and tips displaced by `u`, where things still move by
+/// `change` (m).
 void ContactSolver::find_contacts(std::span<const TouchingTool> tools,
                                   const Eigen::Ref<const Eigen::VectorXd>& u, double change) noexcept {
   contacts_.clear();

@@ -84,7 +84,7 @@ void CoulombSolver::compute_slack(const Matrix& g_matrix, const Vector& g, const
   }
 }
 
-/// What presses on each place, where `force` of a contact is its normal force.
+/// Sums what presses on each place, where `force` of a contact is its normal force.
 template <class Force>
 void CoulombSolver::press(const Force& force) noexcept {
   pressure_.head(static_cast<Eigen::Index>(friction_.mu.size())).setZero();
@@ -102,8 +102,9 @@ void CoulombSolver::put_into_cones(Eigen::Ref<Eigen::VectorXd> z) noexcept {
     z.segment<2>(row_of(i)) = project(z.segment<2>(row_of(i)), friction_.mu[i] * pressure_[i]);
 }
 
-/// What is left of the conditions: of z - Pi(z - rho w), with Pi the projection on the friction cone (the
-/// radius of its cut taken from lambda as it is), in shares of what rounding makes of them; solved below 1.
+/// Returns what is left of the conditions: of z - Pi(z - rho w), with Pi the projection on the friction cone
+/// (the radius of its cut taken from lambda as it is), in shares of what rounding makes of them; solved
+/// below 1.
 double CoulombSolver::residual(const Vector& g, const Vector& z) noexcept {
   const double largest_force = z.cwiseAbs().maxCoeff(), largest_gap = g.head(z.size()).cwiseAbs().maxCoeff();
   double sum = 0;
@@ -122,13 +123,13 @@ double CoulombSolver::residual(const Vector& g, const Vector& z) noexcept {
   return std::sqrt(sum) / kTolerance;
 }
 
-/// Which contacts are closed, and which places stick, by the augmented forces.
+/// Decides which contacts are closed, and which places stick, by the augmented forces.
 void CoulombSolver::classify(const Vector& z, const Vector& w) noexcept {
   for (int k = 0; k < contacts_; ++k) closed_[static_cast<std::size_t>(k)] = z[k] - rho_[k] * w[k] > 0;
   classify_places(z, w);
 }
 
-/// Which places stick, and which slip where to, under what the closed contacts press on them.
+/// Decides which places stick, and which slip where to, under what the closed contacts press on them.
 void CoulombSolver::classify_places(const Vector& z, const Vector& w) noexcept {
   press([&](int k) { return closed_[static_cast<std::size_t>(k)] ? 1.0 : 0.0; });
   auto pressed = from_.head(static_cast<Eigen::Index>(friction_.mu.size()));
@@ -292,7 +293,7 @@ void CoulombSolver::relax(const Matrix& g_matrix, const Vector& g, int sweeps,
   }
 }
 
-/// As the forces say, whatever gaps they leave: those are of another place.
+/// Decides both by the forces, whatever gaps they leave: those are of another place.
 void CoulombSolver::classify_by_force(const Vector& z, const Vector& w) noexcept {
   for (int k = 0; k < contacts_; ++k) closed_[static_cast<std::size_t>(k)] = z[k] > 0;
   classify_places(z, w);

@@ -15,7 +15,7 @@ ClosestPoint corner(int i) noexcept {
   return point;
 }
 
-/// On the edge from corner i to corner j, at `along` of its length from i.
+/// Returns the point on the edge from corner i to corner j, at `along` of its length from i.
 ClosestPoint edge(int i, int j, double along) noexcept {
   if (along <= 0) return corner(i);
   if (along >= 1) return corner(j);

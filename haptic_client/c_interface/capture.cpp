@@ -18,7 +18,8 @@ struct palpate_capture {
   std::uint32_t direction(const protocol::CapturedDatagram& packet, const protocol::Message& message);
 };
 
-/// By the message where it goes one way only; a Bye by the server that was seen before it.
+/// Returns the direction by the message, where that goes one way only; a Bye is the server's if that was seen
+/// before it.
 std::uint32_t palpate_capture::direction(const protocol::CapturedDatagram& packet,
                                          const protocol::Message& message) {
   if (std::holds_alternative<protocol::Bye>(message)) {

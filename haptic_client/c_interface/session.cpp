@@ -119,7 +119,7 @@ void palpate_session::connect() {
   }
 }
 
-/// As the pipeline senses a device, but that a caller may know velocity and orientation.
+/// Senses as the pipeline senses a device, but that a caller may know velocity and orientation.
 protocol::ToolState palpate_session::sense(const palpate_tool_state& published) noexcept {
   const Workspace& workspace = config_.workspace;
   const auto state = c_interface::read_tool_state(published);

@@ -81,7 +81,7 @@ void Calibration::find(const Vec3& p_D) noexcept {
   enter(stage_ < Stage::kHang ? Stage::kCentre : Stage::kHang);
 }
 
-/// What follows from a tick in which the grip was held with `f_D`.
+/// Takes a tick in which the grip was held with `f_D`.
 void Calibration::step(const Vec3& p_D, const Vec3& f_D, double dt) noexcept {
   if (stage_ == Stage::kHang) force_ += dt / (dt + kForceFilter) * (f_D - force_);
   if (stage_ != Stage::kLetDown && holder_.saturated())

@@ -19,7 +19,7 @@
 namespace palpate::client {
 namespace {
 
-/// Until that, or Ctrl-C; returns how long it was, s.
+/// Waits so long, or until Ctrl-C; returns how long it was, s.
 double rest(double seconds) {
   const Time begin = now();
   while (to_seconds(now() - begin) < seconds) {

@@ -25,7 +25,7 @@ namespace {
 // 9: tool, version and number of a page.
 constexpr double kPageBytes = protocol::kHeaderBytes + 9 + 4 * protocol::SurfacePage::kValues;
 
-/// What a capture was like, and what the laws made of it, plain and blended.
+/// The description of a capture, and the scores of the laws on it, plain and blended.
 struct Evaluation {
   double ticks_hz = 0, path = 0, seconds = 0, age = 0;  // Hz, m, s, s: a sum over samples
   std::vector<double> bytes;                            // of each law: a sum over samples
@@ -55,7 +55,7 @@ Request request_of(const std::string& law) {
   return find_row(extrapolators(), law, "method", "--method").make()->request();
 }
 
-/// Of a sample without the parts that the law has no use for.
+/// Returns the bytes of a sample without the parts that the law has no use for.
 double bytes_for(const Request& request, protocol::ForceSample sample) {
   if (!request.at_tool) sample.flags &= ~protocol::ForceSample::kHasTangent;
   if (!request.ahead) sample.flags &= ~protocol::ForceSample::kHasAhead;
@@ -82,7 +82,7 @@ Evaluation start_evaluation(const CaptureSurvey& found, const std::vector<std::s
   return e;
 }
 
-/// What laws know of the surface by now.
+/// The surface as laws know it by now.
 struct KnownSurface {
   SurfaceModel model;
   protocol::SurfacePages pages;
@@ -204,7 +204,7 @@ void add_rows(Json& rows, const std::string& world, const Evaluation& e, const T
   }
 }
 
-/// What the laws of the rows from `begin` on were held against.
+/// Prints the reference of the rows from `begin` on.
 void print_reference(const Json& rows, std::size_t begin) {
   const Json& row = rows[begin];
   const auto number = [&](const char* key) { return row[key].get<double>(); };

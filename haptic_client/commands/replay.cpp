@@ -128,7 +128,7 @@ Json describe_capture(const CaptureSurvey& found, const CapturedRun& run, const 
           {"link_duplicated", run.duplicated()}};
 }
 
-/// Whether these are the forces the client wrote, or what keeps them from being.
+/// Prints whether these are the forces that the client wrote, or what keeps them from being.
 void say_how_exact(const Json& capture, const CapturedRun& run, const std::string& file) {
   fmt::print("haptic_client: {} ticks at {:.6g} Hz, {} samples of client {}\n",
              capture["ticks"].get<std::uint64_t>(), capture["rate_hz"].get<double>(), run.samples,

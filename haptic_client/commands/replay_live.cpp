@@ -13,7 +13,7 @@
 namespace palpate::client {
 namespace {
 
-/// As the file says, but that the hand is the captured one, in the frame of the world.
+/// Returns the client of the file, but that the hand is the captured one, in the frame of the world.
 ClientConfig with_captured_hand(ClientConfig config, double captured_hz) {
   config.rate_hz = std::clamp(nominal_rate(captured_hz, config.rate_hz), kMinRate, kMaxRate);
   config.workspace = {};
@@ -22,7 +22,7 @@ ClientConfig with_captured_hand(ClientConfig config, double captured_hz) {
   return config;
 }
 
-/// Until the capture, or somebody's patience, ends.
+/// Plays until the capture, or somebody's patience, ends.
 void play(HeldTool& tool, double seconds) {
   ProgressLine progress;
   for (const Time start = now();;) {

@@ -105,14 +105,14 @@ void report_missing_ports(const std::vector<ClientConfig>& configs) {
   }
 }
 
-/// Whether the device gave nothing in the whole run, and is not there at its end.
+/// True if the device gave nothing in the whole run, and is not there at its end.
 bool never_there(const ClientConfig& config, const Json& tool) {
   const DeviceSettings& device = config.device;
   if (tool["loop"]["ticks"] == 0 || tool["safety"]["lost"] != tool["loop"]["ticks"]) return false;
   return !is_plugged_in(device);
 }
 
-/// Whether a line can be printed without waiting: nobody who reads slowly may keep us from Ctrl-C.
+/// True if a line can be printed without waiting: nobody who reads slowly may keep us from Ctrl-C.
 bool takes_output() {
   pollfd out{STDOUT_FILENO, POLLOUT, 0};
   return poll(&out, 1, 0) > 0 && (out.revents & POLLOUT) != 0;

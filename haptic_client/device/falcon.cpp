@@ -84,8 +84,8 @@ Falcon::~Falcon() {
   port_->close();
 }
 
-/// What is on the way goes first: a port takes one transfer at a time. Until the zero that follows it has
-/// left, four times at most.
+/// Sends what is on the way first: a port takes one transfer at a time. Tries until the zero that follows it
+/// has left, four times at most.
 bool Falcon::stop() noexcept {
   constexpr int kTimes = 4;  // of a second at most, by `drain`
   bool left = false;

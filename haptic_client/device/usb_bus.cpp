@@ -89,8 +89,8 @@ std::optional<UsbInterface> choose_interface(libusb_device* device, bool hid) {
 
 namespace {
 
-/// Whether a program could use it now: 0 or libusb's error. The kernel's driver would give way, and is left
-/// alone here.
+/// Returns 0 if a program could use it now, or libusb's error. The kernel's driver would yield, and is not
+/// touched here.
 int try_to_use(libusb_device* device, bool hid) {
   libusb_device_handle* handle = nullptr;
   int error = libusb_open(device, &handle);

@@ -37,7 +37,7 @@ BetweenSamples::BetweenSamples(const Sample& before, const Sample& after) noexce
   if (has_slopes()) missed_ -= 0.5 * (before.at_tool->tangent + after.at_tool->tangent) * end_;
 }
 
-/// How far the organ has moved since t_n, m: as the velocities say, and to where it really came.
+/// Returns how far the organ has moved since t_n, m: as the velocities say, and to where it really came.
 Vec3 BetweenSamples::organ(Time t) const noexcept {
   if (slope(before_) == nullptr || slope(after_) == nullptr) return Vec3::Zero();
   const double u = fraction(t), period = to_seconds(after_.t - before_.t);
@@ -74,7 +74,7 @@ Vec3 BetweenSamples::at(const PathTick& tick) noexcept {
   return f.allFinite() ? f : line(tick.t);
 }
 
-/// Whether both ends have slopes, and these lead from one to the other better than nothing does.
+/// True if both ends have slopes, and these lead from one to the other better than nothing does.
 bool BetweenSamples::has_slopes() const noexcept {
   const Linearisation *first = slope(before_), *there = slope(after_);
   if (first == nullptr || there == nullptr) return false;
@@ -114,7 +114,7 @@ Vec3 BetweenSamples::onset(const Vec3& x) const noexcept {
   return std::pow(std::max(depth(x), 0.0) / deepest, std::clamp(power, 1.0, kMostPower)) * f;
 }
 
-/// What the model says at a tick, with the organ where it really was.
+/// Returns what the model says at a tick, with the organ where it really was.
 Vec3 BetweenSamples::local(const PathTick& tick) const noexcept {
   const PathTick::Contact& contact = *tick.contact;
   if (contact.force.isZero(0)) return contact.force;
@@ -138,7 +138,7 @@ BetweenSamples::End BetweenSamples::end_of(const PathTick& tick, const Sample& s
   return end;
 }
 
-/// Whether the model is about right at both samples, so that it may be believed between them.
+/// True if the model is about right at both samples, so that it may be believed between them.
 bool BetweenSamples::ends_agree(const PathTick& last) noexcept {
   if (!before_.surface || !after_.surface || slope(before_) == nullptr || slope(after_) == nullptr)
     return false;

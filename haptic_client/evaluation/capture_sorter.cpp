@@ -83,8 +83,8 @@ std::optional<std::size_t> CaptureSorter::sort_state(const ToolState& state, con
   return index;
 }
 
-/// What comes from the server tells a session from another, but not a run: it never begins a session where
-/// there is a run.
+/// Sorts a message of the server. It tells a session from another, but not a run: it never starts a session
+/// where there is a run.
 std::optional<std::size_t> CaptureSorter::sort_sample(const Header& header, const Endpoint& client,
                                                       bool is_sample) {
   auto [run, link] = known(client, header.session);

@@ -53,8 +53,8 @@ void BestRecent::restart() noexcept {
   ticks_.forget();
 }
 
-/// Which law is best stays, and is judged by what they gave until then, too, which a hand felt as tissue
-/// went.
+/// Keeps the law that is best. Laws are judged by what they gave until then, too, which was rendered as
+/// tissue went.
 void BestRecent::surface_cut() noexcept {
   cut_at_ = samples_ + 1;
   for (Law& law : laws_) law.law->surface_cut();

@@ -87,7 +87,7 @@ std::optional<Vec3> ContactOnPatch::probe(const Surface& surface, const Vec3& p,
   return force;
 }
 
-/// How far from the solved place the tangent leads, m. Friction follows the path more closely.
+/// Returns how far from the solved place the tangent leads, m. Friction follows the path more closely.
 double ContactOnPatch::near(const Surface& surface) const noexcept {
   const double near = std::min(accuracy_.near * state_.depth, accuracy_.most_near * surface.tool.radius);
   return surface.tool.friction > 0 ? near / 4 : near;
@@ -152,7 +152,7 @@ void ContactOnPatch::learn_tangent(const Vec3& motion, const Vec3& force_before)
   state_.tangent += (state_.force - force_before - state_.tangent * motion) / size * motion.transpose();
 }
 
-/// What the patch nodes carry now, which is all that is needed to go on from here.
+/// Notes the loads of the patch nodes, which is all that is needed to continue from here.
 void ContactOnPatch::note_loads(const ContactSolver& solved) noexcept {
   const auto forces = solved.node_forces();
   ++solves_;
@@ -163,8 +163,8 @@ void ContactOnPatch::note_loads(const ContactSolver& solved) noexcept {
   state_.tip_offset = u_.segment<3>(3 * patch_.nodes());
 }
 
-/// How the nodes of the patch went in the last increment, so that the next patch knows; returns that of the
-/// tip.
+/// Notes how the nodes of the patch went in the last increment, so that the next patch knows; returns that of
+/// the tip.
 Vec3 ContactOnPatch::note_directions(std::size_t vertices) noexcept {
   std::fill_n(near_.went.begin(), vertices, Vec3::Zero());
   if (motion_.isZero(0)) return Vec3::Zero();
@@ -195,7 +195,7 @@ bool ContactOnPatch::take_patch(const Surface& surface, const Vec3& p) noexcept 
                              [&](const VertexLoad& load) { return slot_of_vertex_[load.vertex] >= 0; });
 }
 
-/// Where the loads have moved what may be near the tool; nothing moves farther than what they press.
+/// Finds where the loads have moved what may be near the tool; nothing moves farther than what they press.
 bool ContactOnPatch::displace_near(const Surface& surface, const Vec3& p) noexcept {
   const SurfaceModel& model = *surface.model;
   const auto rest = model.rest();
@@ -291,14 +291,14 @@ bool ContactOnPatch::take_shapes(const SurfaceModel& model) noexcept {
   return true;
 }
 
-/// Where the patch is free of the tool, by the slow modes of now and by what has crept.
+/// Updates where the patch is free of the tool, by the published modes of now and by what has crept.
 void ContactOnPatch::warp(const SurfaceModel& model) noexcept {
   if (!memory_->creeping().empty() && ++far_.age > kFarCreepAge) find_far_creep(model);
   for (int i = 0; i < patch_.nodes(); ++i)
     patch_.free[i] = model.rest()[vertices_[i]] + memory_->warp(shapes_[i]) + creep_of(i) - memory_->crept();
 }
 
-/// How far a patch node has crept, m.
+/// Returns how far a patch node has crept, m.
 Vec3 ContactOnPatch::creep_of(int node) const noexcept {
   Vec3 sum = far_.creep[node];
   for (const VertexLoad& load : memory_->creeping()) {

@@ -34,8 +34,8 @@ Vec3 ForceEstimate::force(const Vec3& p, Time t) noexcept {
   return last_ = blended(f, t);
 }
 
-/// What is blended in goes with the force of the law, as that gets less than when it began: a tool that
-/// leaves is free at once, comes into contact again as the law says, and no force pulls.
+/// Adds the blend to the force of the law. It shrinks with that force from when it began: a tool that leaves
+/// is free at once, comes into contact again as the law says, and no force pulls.
 Vec3 ForceEstimate::blended(const Vec3& f, Time t) noexcept {
   if (f.isZero(0)) offset_.setZero();
   const double size = f.norm(), fraction = size < began_ ? size / began_ : 1;
@@ -57,7 +57,7 @@ Vec3 ForceEstimate::law_force(const Vec3& p, Time t) noexcept {
   return law_->force(p, law_time(t));
 }
 
-/// What a law takes for `t`. A sample alone says nothing of time.
+/// Returns what a law takes for `t`. A sample alone says nothing of time.
 Time ForceEstimate::law_time(Time t) const noexcept {
   if (period_ == Time::zero()) return newest_.t;
   const Time patience = std::min(usual_age_ + kPatience * period_, kOutage), age = t - newest_.t;

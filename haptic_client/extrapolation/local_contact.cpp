@@ -83,8 +83,9 @@ void LocalContact::learn_factor(const Vec3& right, const Vec3& local) noexcept {
   kappa_ = std::clamp(factor, 1 / kMostCorrection, kMostCorrection);
 }
 
-/// What is off at a light touch is inertia that the model does not have, and soon gone; under a firm one it
-/// is the law of the tissue. Which of both the first touches are is not known yet: little of each counts.
+/// Compares the model with a sample while the tissue swings. The error of a light touch is inertia that the
+/// model does not have, and soon gone; that of a firm one is the law of the tissue. Which of both the first
+/// touches are is not known yet: little of each counts.
 void LocalContact::compare_swinging(const Vec3& local) noexcept {
   local_size_ = 0;
   remainder_.setZero();
@@ -157,7 +158,7 @@ std::optional<Vec3> LocalContact::follow(const Vec3& p, Time t) noexcept {
   return local;
 }
 
-/// Where the newest sample says that the slow modes stand.
+/// Takes over where the newest sample says that the published modes are.
 bool LocalContact::take_modes() noexcept {
   const Surface& surface = *newest_.surface;
   if (!memory_.is_placed() && !memory_.place_near(*surface.model, newest_.p - surface.shift)) return false;
@@ -167,7 +168,7 @@ bool LocalContact::take_modes() noexcept {
   return true;
 }
 
-/// Where the slow modes hold and bear the surface that is near now, for the ticks to come.
+/// Finds where the published modes hold and bear the surface that is near now, for the ticks to come.
 bool LocalContact::find_footing(const Vec3& p_rest) noexcept {
   const SurfaceModel& model = *newest_.surface->model;
   if (!memory_.place_near(model, p_rest)) return false;
@@ -177,12 +178,12 @@ bool LocalContact::find_footing(const Vec3& p_rest) noexcept {
   return memory_.carry(model, contact_.loads());
 }
 
-/// Where `p` is when the organ is at rest.
+/// Returns where `p` is when the organ is at rest.
 Vec3 LocalContact::at_rest(const Vec3& p, Time t) const noexcept {
   return p - newest_.surface->shift - motion_.since_sample(t) - swing_;
 }
 
-/// How far the other tools give way to what this one pressed with, `rendered` (N), at the last tick.
+/// Returns how far the other tools give way to what this one pressed with, `rendered` (N), at the last tick.
 Vec3 LocalContact::moved_by_others(const Vec3& rendered) const noexcept {
   if (!newest_.others) return Vec3::Zero();
   const Vec3 change = newest_.others->compliance * (newest_.f - rendered);

@@ -75,7 +75,7 @@ bool ModalMemory::take(const Surface& surface, Time t, const Vec3& f) noexcept {
   return known_;
 }
 
-/// Whether these are amplitudes of an organ.
+/// True if these are amplitudes of an organ.
 bool ModalMemory::take_published(const Surface& surface) noexcept {
   const protocol::RelaxedState& relaxed = surface.relaxed;
   first_published_ = std::min<std::size_t>(relaxed.first, system_.count);
@@ -161,9 +161,9 @@ void ModalMemory::begin(Time t, const Vec3& f) noexcept {
   foot_.crept.setZero();
 }
 
-/// What the modes were off by at the tick of the sample goes on by itself, driven by no more than what other
-/// tools are now thought to do otherwise than before. All ticks since are set right with it, so that a sample
-/// which tells of one of them does not count it again.
+/// Corrects the modes by their error at the tick of the sample. It continues by itself, driven by no more
+/// than what other tools are now thought to do otherwise than before. All ticks since are corrected with it,
+/// so that a sample which tells of one of them does not count it again.
 void ModalMemory::correct(ModalState& before, Time t) noexcept {
   drift_ = at(published_.q) - at(before.q);
   ModalState off;
@@ -248,7 +248,7 @@ Vec3 ModalMemory::at(const ModalNumbers& q) const noexcept {
   return sum;
 }
 
-/// Of a force on the tool; the tissue feels the opposite.
+/// Returns the modal forces of a force on the tool; the tissue feels the opposite.
 ModalNumbers ModalMemory::force_of(const Vec3& f) const noexcept {
   ModalNumbers force{};
   for (std::size_t k = 0; k < system_.count; ++k) force[k] = -f.dot(bearing_[k]);
@@ -269,19 +269,19 @@ void ModalMemory::advance(Time t) noexcept {
   present_ = now(t).q;
 }
 
-/// At a time up to a step after `time_`.
+/// Returns the state at a time up to a step after `time_`.
 ModalState ModalMemory::now(Time t) const noexcept {
   return soon(state_, others_.driven ? all_forces(t) : force_, t - time_);
 }
 
-/// Of the tool, and of others.
+/// Returns the modal forces of the tool and of others.
 ModalNumbers ModalMemory::all_forces(Time t) const noexcept {
   ModalNumbers force = force_;
   for (std::size_t k = 0; k < system_.count; ++k) force[k] += others_.now.at(k, t);
   return force;
 }
 
-/// After a `rest` of a step, under a force that is held.
+/// Returns the state after the `rest` of a step, under a force that is held.
 ModalState ModalMemory::soon(ModalState state, const ModalNumbers& force, Time rest) const noexcept {
   const double h = to_seconds(rest);
   const ModalNumbers from = state.q;

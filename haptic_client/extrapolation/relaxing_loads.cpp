@@ -120,7 +120,8 @@ RelaxingLoads::Vertex* RelaxingLoads::find(int number) noexcept {
   return found == vertices_.end() ? nullptr : &*found;
 }
 
-/// In the place of the one that was pressed least where there are too many; null where all are pressed now.
+/// Returns the load of this vertex, in place of the one that was pressed least where there are too many; null
+/// where all are pressed now.
 RelaxingLoads::Vertex* RelaxingLoads::find_or_add(const SurfaceModel& model, int number) noexcept {
   if (Vertex* const known = find(number)) return known;
   Vertex fresh{.number = number, .held = is_held(model, number)};

@@ -160,7 +160,7 @@ class SurfaceModel::PageRequests {
   }
   bool full() const { return count_ == pages_.size(); }
   bool any() const { return count_ > 0; }
-  /// Whether this page, which is missing, has been asked for.
+  /// Notes that this page, which is missing, has been requested.
   void add(std::uint32_t page) {
     missing = true;
     Requested& requested = requested_[page % kRequested];

@@ -162,7 +162,7 @@ void Pipeline::request_pages(ToolState& tool, Time now) noexcept {
   tool.surface_version = model_->version();
 }
 
-/// What of the force `f_W` (N, world) may go to the motors: passivity, watchdog, limiter.
+/// Returns what of the force `f_W` (N, world) may go to the motors: passivity, watchdog, limiter.
 Vec3 Pipeline::safe(const Vec3& f_W, const ToolState& tool, double dt) noexcept {
   const bool lost = (tool.flags & ToolState::kDeviceLost) != 0,
              clutched = (tool.flags & ToolState::kClutched) != 0, off = lost || clutched;

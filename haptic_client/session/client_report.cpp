@@ -27,8 +27,8 @@ Json substitutes_report(const Substitutes& substitutes) {
   return laws;
 }
 
-/// Which law was really at work where `law` was asked for: the one of most ticks, and each one's share of
-/// them, the largest first. Empty before the first sample.
+/// Returns which law was really at work where `law` was asked for: the one of most ticks, and each one's
+/// share of them, the largest first. Empty before the first sample.
 Json at_work_report(const std::string& law, const Substitutes& substitutes, std::uint64_t ticks) {
   std::vector<std::pair<std::uint64_t, std::string>> laws{{ticks, law}};
   for (const auto& [name, stood_in] : substitutes.rows()) {
@@ -63,7 +63,7 @@ Json methods_report(const Scoring& scoring) {
   return methods;
 }
 
-/// What the laws were held against: the force between samples, of most ticks, and each kind's share.
+/// Returns what the laws were held against: the force between samples, of most ticks, and each kind's share.
 Json reference_report(const Scoring& scoring) {
   Json report = {{"name", name_of(scoring.mostly_between())}};
   for (const auto kind : {ReferenceKind::kContact, ReferenceKind::kHermite, ReferenceKind::kLine}) {

@@ -59,7 +59,7 @@ class Guarded {
   void take_all() {
     for (std::size_t i = 0; i < configs_.size(); ++i) take(i, "the client died");
   }
-  /// Whether a loop stands still; to be asked at each look.
+  /// True if a loop stands still; to be asked at each look.
   bool is_idle() {
     bool idle = false;
     for (std::size_t i = 0; i < loops_.size(); ++i) idle |= loops_[i].is_idle(beats_[i]);
@@ -67,7 +67,7 @@ class Guarded {
   }
 
  private:
-  /// In a process of its own: one must not wait for another.
+  /// Switches the force of a tool off in a process of its own: one must not wait for another.
   void take(std::size_t i, const char* why) {
     if (taken_[i] != 0 || row_of(configs_[i].device).make_safe == nullptr) return;
     taken_[i] = 1;

@@ -50,7 +50,7 @@ struct palpate_scene {
   protocol::ToolState state_of(std::size_t i, const palpate_tool_state& published, Time then) const;
 };
 
-/// Of tool `i`, at the end of the step.
+/// Returns the state of tool `i` at the end of the step.
 protocol::ToolState palpate_scene::state_of(std::size_t i, const palpate_tool_state& published,
                                             Time then) const {
   auto state = c_interface::read_tool_state(published);

@@ -69,7 +69,7 @@ bool PublishedSurface::Part::holds(const Vec3& place, double fraction) const noe
   return std::ranges::any_of(balls, [&](const Ball& ball) { return ball.holds(place, fraction); });
 }
 
-/// What is left, by itself: what both the modes and the compliance of any part of its surface follow from.
+/// The remaining body by itself: both the modes and the compliance of any part of its surface follow from it.
 struct SurfacePublisher::Body {
   Body(const SurfacePublisher& owner, TetMesh&& remaining, const ElasticTensors& tensors,
        const Progress& progress, const SetupCache* cache)
@@ -100,7 +100,7 @@ struct SurfacePublisher::Body {
   ModelInputs inputs_for(const std::vector<int>& vertices) const {
     return {owner_.scene_, mesh, owner_.surface_, fixed, vertices, progress_};
   }
-  /// Whether this surface vertex is known here: it was held, or is of a part that hangs on what was.
+  /// True if this surface vertex is known here: it was held, or is of a part that hangs on what was.
   bool has(int vertex) const {
     const int node = owner_.surface_.vertices[static_cast<std::size_t>(vertex)];
     return moves(vertex) || std::ranges::binary_search(standing, node);
@@ -188,7 +188,7 @@ void SurfacePublisher::step(std::span<const Tool> tools, const Tissue& tissue, b
   }
 }
 
-/// What is missing for these tools, if anything is.
+/// Starts what is missing for these tools, if anything is.
 void SurfacePublisher::start_next(std::span<const Tool> tools, const Tissue& tissue) {
   if (now_.body == nullptr) {
     if (now_.step - now_.last_cut > calm_steps_) start_body(tissue);

@@ -23,7 +23,7 @@ constexpr double kLongSetUp = 1e4;             // ms: a scene whose variants are
 constexpr double kMostVariant = 2e9;           // bytes of compliance that a variant is built with
 constexpr double kUsualFriction = 0.3;         // as in block_friction.toml
 constexpr double kBytesOfMotion = 9 * 24 + 8;  // of a vertex in explicit steps: nine vectors, a mass
-/// What a variant is compared by. `setup_ms` is without reading the mesh, which all share.
+/// The figures by which a variant is compared. `setup_ms` is without reading the mesh, which all share.
 struct Cost {
   double bytes = 0, setup_ms = 0, step_ms = 0;
 };
@@ -46,7 +46,7 @@ std::size_t loaded_nodes(const Scene& scene, const Simulation& simulation) {
       all, [&](int v) { return !std::ranges::binary_search(fixed, simulation.surface().vertices[v]); }));
 }
 
-/// By formula; what no elastic scene has is nothing.
+/// Returns the bytes by formula; 0 for a scene that has no elastic tissue.
 double compliance_bytes(const Scene& scene, const Simulation& simulation) {
   if (!model_of(scene.deformation).keeps_compliance()) return 0;
   return scene.deformation.of<ComplianceTolerance>().bytes(loaded_nodes(scene, simulation));
@@ -73,7 +73,7 @@ std::string shape_of(const Tool& tool) {
   return tool.is_sphere() ? "sphere" : fmt::format("capsule, length {:g} mm", 1e3 * tool.length);
 }
 
-/// Of what can be cut, to tell clients its surface anew.
+/// True if the scene keeps a factor of what can be cut, to publish its surface anew.
 bool keeps_factor(const Simulation& simulation) {
   return std::ranges::any_of(simulation.memory(),
                              [](const MemoryPart& part) { return part.name == "published surface"; });
@@ -167,7 +167,7 @@ struct Own {
   double compliance_ms = 0;  // of the set-up
 };
 
-/// What setting up a variant would take, ms: compliance goes with the nodes that can be loaded.
+/// Returns what setting up a variant would take, ms: compliance goes with the nodes that can be loaded.
 double predicted_ms(const Scene& variant, const Own& own) {
   const auto nodes = [&](const Scene& scene) {
     return static_cast<double>(
@@ -177,7 +177,7 @@ double predicted_ms(const Scene& variant, const Own& own) {
   return own.cost.setup_ms + std::max(more, 0.0) * own.compliance_ms;
 }
 
-/// What `variant` costs more, built and stepped in the same way.
+/// Returns what `variant` costs more, built and stepped in the same way.
 Omitted compare(Omitted row, const Scene& variant, const Own& own) {
   const double compliance = compliance_bytes(variant, own.simulation);
   if (compliance > kMostVariant) {
@@ -208,7 +208,7 @@ Omitted compare(Omitted row, const Scene& variant, const Own& own) {
   return row;
 }
 
-/// What no tool reaches; nothing where a tool reaches everything.
+/// Returns what no tool reaches; nothing where a tool reaches everything.
 std::optional<Omitted> beyond_reach(const Own& own) {
   const auto& tools = own.scene.tools;
   if (!std::ranges::all_of(tools, [](const ToolSettings& tool) { return tool.reach.has_value(); })) return {};
@@ -235,7 +235,7 @@ Omitted elasticity(const Own& own) {
   return compare(row, variant, own);
 }
 
-/// Of all tools; nothing where one has some.
+/// Returns the row of friction, of all tools; nothing where one has some.
 std::optional<Omitted> friction(const Own& own) {
   Scene variant = own.scene;
   for (ToolSettings& tool : variant.tools) {
@@ -258,7 +258,7 @@ Omitted total_compliance(const Own& own) {
           .note = fmt::format("computed for all {} free vertices, less what is kept", free)};
 }
 
-/// Of a model at rest: what motion would hold.
+/// Returns the row of motion, of a model at rest: what motion would hold.
 Omitted motion(const Own& own) {
   const auto n = static_cast<double>(own.simulation.mesh().vertices.size());
   return {.what = "motion (mass, velocities)",
@@ -267,7 +267,7 @@ Omitted motion(const Own& own) {
           .note = fmt::format("computed: {:g} n; the model is at rest", kBytesOfMotion)};
 }
 
-/// What is not cut keeps nothing of which tetrahedra meet, nor of the heat in them.
+/// Returns the row of cutting: a scene without it stores neither which tetrahedra touch nor the heat in them.
 Omitted cutting(const Own& own) {
   const auto vertices = static_cast<double>(own.simulation.mesh().corners()),
              tetrahedra = static_cast<double>(own.simulation.mesh().tetrahedra.size()),
@@ -279,7 +279,7 @@ Omitted cutting(const Own& own) {
           .note = "computed: neighbours, faces and heat of each tetrahedron; a step looks at none of it"};
 }
 
-/// What a step saves as long as no client's law asks for dF/dp.
+/// Returns what a step saves as long as no client's law asks for dF/dp.
 Omitted tangents(Own& own) {
   const StepTimes without =
       time_steps(own.scene, own.simulation, own.sites, own.steps, own.progress, {.tangent = false});

@@ -54,7 +54,7 @@ std::string table(const std::vector<Row>& rows, std::size_t first_right, std::si
   return text;
 }
 
-/// What stands at "FILE:LINE", with its place; or `where` itself.
+/// Returns what stands at "FILE:LINE", with its place; or `where` itself.
 std::string line_at(const std::string& where) {
   const std::size_t colon = where.rfind(':');
   int number = 0;

@@ -26,7 +26,8 @@ fs::path gallery_folder() {
   return {};
 }
 
-/// What stands between the quotes of `title = "..."`; these files are ours, and read as they are meant.
+/// Returns what stands between the quotes of `title = "..."`; these files are ours, and read as they are
+/// meant.
 std::string title_in(const std::string& line) {
   const std::size_t begin = line.find('"'), end = line.rfind('"');
   return line.starts_with("title") && begin < end ? line.substr(begin + 1, end - begin - 1) : "";

@@ -106,7 +106,7 @@ void LiveView::turned(const LoopTurn& turn) noexcept {
   viewer_.ring();
 }
 
-/// What came of this step, for the picture that shows it.
+/// Notes the outcome of this step, for the picture that shows it.
 void LiveView::note(const LoopTurn& turn) noexcept {
   newest_.late = turn.late;
   newest_.t = to_seconds(now() - began_);

@@ -22,7 +22,7 @@ SeenClient::Name name_of(const protocol::Telemetry::Name& published) {
   return name;
 }
 
-/// What is known of the client of one tool, and of the link to it.
+/// The client of one tool, and the link to it, as far as they are known.
 class ToolEvents {
  public:
   ToolEvents() { client_.errors_percent.fill(std::nanf("")); }

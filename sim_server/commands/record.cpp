@@ -32,7 +32,7 @@ Trajectory read_motion(const std::filesystem::path& file) {
   return Trajectory(read_trajectory_settings(*section));
 }
 
-/// In the order of the tools; a tool that is captured needs one.
+/// Reads the motions in the order of the tools; a tool that is captured needs one.
 std::vector<Trajectory> read_motions(const RecordOptions& options, const Scene& scene) {
   if (options.trajectories.size() > scene.tools.size())
     fail("--trajectory: {} motions, but {} has {} [[tool]]{}", options.trajectories.size(),

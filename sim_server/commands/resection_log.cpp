@@ -47,7 +47,7 @@ std::string row_text(const ResectionRow& row, bool planned) {
       all.time_at_end);
 }
 
-/// How far from the plan, where there is one.
+/// Returns how far a cut is from the plan, where there is one.
 std::string away(bool planned, double metres, const char* how) {
   return planned ? fmt::format(", {:.1f} mm from the plan {}", 1e3 * metres, how) : "";
 }

@@ -76,7 +76,7 @@ Json timeline_report(const Timeline<StepCell>& timeline) {
   return {{"cell_s", to_seconds(timeline.width())}, {"cells", cells}};
 }
 
-/// Of a tool that was held, but never touched.
+/// Returns by how much a tool that was held, but never touched, missed the tissue, m.
 Json missed_by(const ToolStats& tool) {
   if (tool.contact_steps > 0 || !tool.nearest_m) return nullptr;
   return *tool.nearest_m;
@@ -86,7 +86,7 @@ Json percent_of(const DiscretisationError& error) {
   return error.known() ? Json(error.percent) : Json(nullptr);
 }
 
-/// What mesh and time step cost the force of a tool that pressed on tissue.
+/// Returns what mesh and time step cost the force of a tool that pressed on tissue.
 Json rendered_report(const ErrorOfForce& errors, std::size_t tool) {
   const auto elements = errors.elements_per_radius(tool);
   if (!elements) return nullptr;
@@ -143,7 +143,7 @@ std::string cost_text(const char* what, const Json& rendered, const char* percen
                      rendered["how"][how].get<std::string>());
 }
 
-/// Of each tool that pressed on tissue.
+/// Prints the errors of each tool that pressed on tissue.
 void print_errors(const Json& report) {
   for (std::size_t i = 0; i < report["tools"].size(); ++i) {
     const Json& rendered = report["tools"][i]["rendered"];
@@ -300,7 +300,7 @@ auto serve_until(SimLoop& loop, NetLink& link, protocol::Recorder* recorder, Liv
   return watching();               // then each is asked to stop, the simulation first
 }
 
-/// What came of a run: on the terminal, and in the files that were asked for.
+/// Reports the results of a run, on the terminal and in the files that were requested.
 void report_results(const ServerOptions& options, const Simulation& simulation, const Json& report) {
   print_summary(report, simulation);
   if (const std::string cut = resection_text(simulation); !cut.empty()) fmt::print("            {}\n", cut);

@@ -27,7 +27,7 @@
 namespace palpate::sim {
 namespace {
 
-/// At rest under all loads.
+/// Finds the equilibrium under all loads.
 Outcome find_rest(const Scene& scene, const Solid& solid, const Loads& loads, ProgressLine& progress) {
   const StaticLoad load{[&](std::span<const Vec3> x, std::span<Vec3> f) { loads.add_forces(x, f); },
                         loads.held(), loads.moved()};
@@ -77,7 +77,7 @@ class Series {
   bool finished_ = false;
 };
 
-/// How a motion is stepped: as the scene says, where its model is implicit; for models that only serve tools
+/// The stepping of a motion: as the scene says, where its model is implicit; for models that only serve tools
 /// by BDF2, with their damping where they have one.
 struct Stepping {
   DynamicsSettings dynamics{.second_order = true};
@@ -133,7 +133,8 @@ int steps_of(const SolveOptions& options) {
   return static_cast<int>(std::ceil(*options.seconds / options.step - 1e-9));
 }
 
-/// From rest, with all loads there at once, what is displaced moved at once, and what swings on its path.
+/// Moves from rest, with all loads there at once, what is displaced moved at once, and what swings on its
+/// path.
 Outcome move_for(const SolveOptions& options, const Scene& scene, const Solid& solid, const Loads& loads,
                  ProgressLine& progress) {
   const Stepping stepping(scene.deformation);

@@ -41,7 +41,7 @@ double von_mises(const Mat3& stress) {
   return std::sqrt(1.5) * deviator.norm();
 }
 
-/// Of nodes along the axes in which they are held, N.
+/// Sums the forces of nodes along the axes in which they are held, N.
 Vec3 held_force(std::span<const Vec3> residual, std::span<const std::pair<int, HeldAxes>> nodes) {
   Vec3 sum = Vec3::Zero();
   for (const auto& [i, axes] : nodes) {

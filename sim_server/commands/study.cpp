@@ -33,7 +33,7 @@ void add_file(Fnv1a& hash, const std::filesystem::path& file) {
     hash.add(block.data(), static_cast<std::size_t>(bytes.gcount()));
 }
 
-/// Of all that traces depend on: the scene, the meshes, the motion and this program.
+/// Returns a fingerprint of all that traces depend on: the scene, the meshes, the motion and this program.
 std::string fingerprint(const StudyOptions& options, const StudyPlan& plan) {
   Fnv1a hash;
   add_file(hash, options.scene);

@@ -30,7 +30,7 @@ namespace {
 constexpr double kLongestStep = 1;  // s between two answers; what was longer was a pause, or another session
 constexpr double kSimilar = 0.1;  // of the largest force: how far off a scene is that is not the captured one
 
-/// What a session shows of itself without a scene.
+/// Shows what a session has to show without a scene.
 void show_captured(const CapturedAnswer& answer, Picture& picture) {
   SeenTool& seen = picture.tools[answer.sample.tool];
   const protocol::ForceSample& sample = answer.sample;
@@ -72,7 +72,7 @@ class Rerun {
   }
   /// The tool of this session is in no hand from the step on that the next answer begins.
   void release(std::uint64_t session) { departed_.insert(session); }
-  /// For the step to come.
+  /// Takes an answer for the step to come.
   void take(const CapturedAnswer& answer) {
     if (answer.sample.tool >= inputs_.size())
       fail("the capture has tool {}, and the scene only {}", answer.sample.tool + 1, inputs_.size());
@@ -103,7 +103,7 @@ class Rerun {
     }
     show_organ(simulation_, picture);
   }
-  /// Of the forces, from those captured, and the largest of these, N.
+  /// Returns how far the forces are from those captured; `largest`: the largest of these, N.
   double off() const { return off_; }
   double largest() const { return largest_; }
 

@@ -84,7 +84,7 @@ void Bvh::find_groups(std::size_t triangles) {
   }
 }
 
-/// Of its group, whose last triangle fills the gap, or of the loose ones.
+/// Removes a triangle from its group, whose last triangle fills the gap, or from the loose ones.
 void Bvh::take_out(int triangle) {
   int& group = group_of_[static_cast<std::size_t>(triangle)];
   if (group < 0) {
@@ -120,7 +120,7 @@ void Bvh::change(std::span<const Vec3> rest, std::span<const Triangle> before,
   }
 }
 
-/// Where those below it are fitted.
+/// Fits a box to those below it, which are fitted.
 void Bvh::fit(Node& node, std::span<const Vec3> positions) noexcept {
   if (!is_group(node)) {
     const Node& first = *(&node + 1);

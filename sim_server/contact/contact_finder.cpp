@@ -10,7 +10,7 @@ namespace {
 constexpr double kMostBalls = 3;   // as dense as the densest, along an axis
 constexpr double kNothing = 1e-9;  // m
 
-/// Whether the triangle's bounding box comes within `reach` of that of p and q: cheap, never wrong on the
+/// True if the triangle's bounding box comes within `reach` of that of p and q: cheap, never wrong on the
 /// safe side.
 bool may_reach(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const Vec3& q,
                double reach) noexcept {
@@ -23,7 +23,7 @@ Eigen::AlignedBox3d box_around(const Vec3& p, const Vec3& q, double reach) noexc
   return {p.cwiseMin(q).array() - reach, p.cwiseMax(q).array() + reach};
 }
 
-/// Whether the axis from p to q comes within `reach` of the triangle.
+/// True if the axis from p to q comes within `reach` of the triangle.
 bool reaches(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, const Vec3& q,
              double reach) noexcept {
   if (reach < 0) return false;
@@ -129,8 +129,8 @@ bool ContactFinder::try_gather(std::span<const Vec3> positions, const Vec3& p, c
   return fits;
 }
 
-/// Of those between `reach` and `more` away, for all of which there is no room, the nearest, and of equally
-/// far ones the first: a long axis is as far from all that it lies on.
+/// Adds, of those between `reach` and `more` away, for all of which there is no room, the nearest, and of
+/// equally far ones the first: a long axis is as far from all that it lies on.
 void ContactFinder::add_some(std::span<const Vec3> positions, const Vec3& p, const Vec3& q, double reach,
                              double more, ContactPatch& patch) noexcept {
   for (int halved = 0; halved < 12; ++halved) {

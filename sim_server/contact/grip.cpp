@@ -97,7 +97,7 @@ Vec3 Grip::offset(std::size_t held, const ToolPose& pose) const {
   return turn.coeffs() == Quat::Identity().coeffs() ? offsets_[held] : Vec3(turn * offsets_[held]);
 }
 
-/// What the tool has turned by since the jaws closed.
+/// Returns what the tool has turned by since the jaws closed.
 Quat Grip::turned(const ToolPose& pose) const {
   if (!turns_ || !closed_at_) return Quat::Identity();
   if (pivot_) return least_turn(axis(*closed_at_), axis(pose));
@@ -116,7 +116,7 @@ Mat3 Grip::turn_of_motion(const ToolPose& pose) const {
   return turn / (*pivot_ - pose.p_W).norm();
 }
 
-/// How far a held vertex goes per motion of the tool, that turns so.
+/// Returns how far a held vertex goes per motion of the tool, that turns so.
 Mat3 Grip::offset_of_motion(std::size_t held, const ToolPose& pose, const Mat3& turn) const {
   const Vec3 arm = offset(held, pose);
   Mat3 moved = Mat3::Identity();
@@ -124,7 +124,7 @@ Mat3 Grip::offset_of_motion(std::size_t held, const ToolPose& pose, const Mat3& 
   return moved;
 }
 
-/// What is missing to the place of each vertex, into `misfit_`; the largest component.
+/// Finds what is missing to the place of each vertex, into `misfit_`; returns the largest component, m.
 double Grip::misfit(const ToolPose& pose, const ToolTissue& tissue, std::span<const VertexLoad> own) {
   const Vec3 tip = pose.p_W - patch_.tool_compliance * sum_of(own);
   double largest = 0;
@@ -158,7 +158,7 @@ bool Grip::factor(const ToolTissue& tissue) {
   return factored_;
 }
 
-/// Of now: how stiff each vertex is, where that is by itself, or the factor of all.
+/// Takes the compliance of now: the stiffness of each vertex, where that is by itself, or the factor of all.
 bool Grip::take_compliance(const ToolTissue& tissue) {
   const auto each = std::span(stiffness_).first(vertices_.size());
   const ComplianceSource* const source = tissue.traits().columns;
@@ -172,7 +172,7 @@ bool Grip::take_compliance(const ToolTissue& tissue) {
   return true;
 }
 
-/// From what is missing (m) to the loads that bring it, N.
+/// Turns what is missing (m) into the loads that bring it, N.
 void Grip::solve(Eigen::Ref<Eigen::VectorXd> misfit) const noexcept {
   for (std::size_t i = 0; alone_ && i < vertices_.size(); ++i) {
     auto one = misfit.segment<3>(3 * static_cast<Eigen::Index>(i));

@@ -60,7 +60,7 @@ void JointGrip::put_loads(Tissue& tissue) {
   tissue.apply_all_loads();
 }
 
-/// What is missing to the place of each vertex, into `misfit_`; the largest component.
+/// Finds what is missing to the place of each vertex, into `misfit_`; returns the largest component, m.
 double JointGrip::misfit(std::span<const ToolContact> tools, const Tissue& tissue) {
   double largest = 0;
   for (const Holder& holder : holders_) {

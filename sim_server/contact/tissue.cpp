@@ -143,7 +143,7 @@ Vec3 ToolTissue::still_to_come(int vertex) const noexcept {
                             : Vec3(Vec3::Zero());
 }
 
-/// What is free to this tool is pushed to `positions`, if that moves it. Returns whether what matters to it
+/// Pushes what is free to this tool to `positions`, if that moves it. Returns whether what matters to it
 /// moves.
 bool Tissue::push(ToolLoads& tool) {
   const bool was_pushed = tool.free.data() == tool.pushed.data();
@@ -186,7 +186,7 @@ void Tissue::set_free(const FreeMotion& motion) noexcept {
   ++motions_;
 }
 
-/// What may have moved since a tool's contact was last solved; empty: any may have.
+/// Returns what may have moved since a tool's contact was last solved; empty: any may have.
 std::span<const int> Tissue::moved_since(const ToolLoads& tool) const noexcept {
   const bool of_one_motion = tool.solved_in + 1 >= motions_ && tool.carried.isZero(0);
   return of_one_motion && moved_ != nullptr ? std::span<const int>(*moved_) : std::span<const int>();

@@ -27,7 +27,7 @@ constexpr int kMaxIterations = 400, kMaxSettling = 400;
 // Of an increment with friction: how far things end from where those of the one before went on to.
 constexpr double kForeseen = 0.1;
 
-/// How much of the tool's axis can be near the organ, m.
+/// Returns how much of the tool's axis can be near the organ, m.
 double longest_axis(const Tool& tool, std::span<const Vec3> rest) {
   if (!tool.trocar) return tool.length;
   double longest = 0;
@@ -101,7 +101,7 @@ void ToolContact::close_grip(ToolTissue tissue) {
   if (holds()) solve_grasp(now_.place, tissue);
 }
 
-/// What it holds comes with it, straight to `pose`.
+/// Moves what it holds with it, straight to `pose`.
 void ToolContact::solve_grasp(const ToolPose& pose, ToolTissue tissue) {
   now_.placed = now_.arrived = true;
   now_.place = pose;
@@ -201,15 +201,16 @@ void ToolContact::end_way(const ContactForce& contact, ToolTissue tissue) {
   if (way_.lost) flag();
 }
 
-/// How far the surface near the tool has gone since contact was last solved, m; 0: not so far that the tool
-/// need meet it in parts.
+/// Returns how far the surface near the tool has gone since contact was last solved, m; 0: not so far that
+/// the tool need meet it in parts.
 double ToolContact::surface_motion(ToolTissue tissue) const {
   const double surface =
       tissue.surface_motion(now_.place.p_W, far_end(tool_, now_.place), kGather * tool_.radius);
   return surface > kMaxJump * tool_.radius ? surface : 0;
 }
 
-/// Where the surface comes along by `surface` (m) while the tool goes by `motion` (m).
+/// Returns in how many increments they move where the surface comes along by `surface` (m) while the tool
+/// goes by `motion` (m).
 double ToolContact::increments_for(double motion, double surface) const noexcept {
   if (surface == 0) return 1;
   return std::clamp(std::ceil((motion + surface) / (kIncrement * tool_.radius)), 1.0, kMaxIncrements);
@@ -227,8 +228,9 @@ double ToolContact::increments_to(const ToolPose& pose) const noexcept {
   return std::max(increments, std::min(wanted, kFrictionIncrements));
 }
 
-/// At a share of the path: how far the cubic through both poses and velocities is from the line (Hermite).
-/// Never farther than a quarter of it, or of a increment without friction, whatever the velocities.
+/// Returns how far, at a fraction of the path, the cubic through both poses and velocities is from the line
+/// (Hermite). Never farther than a quarter of it, or of an increment without friction, whatever the
+/// velocities.
 Vec3 ToolContact::path_offset(double fraction, const Vec3& motion) const noexcept {
   if (!has_friction()) return Vec3::Zero();
   const double most = std::min(motion.norm(), kIncrement * tool_.radius);
@@ -421,7 +423,8 @@ double ToolContact::follow_trend(Eigen::Ref<Eigen::VectorXd> u) noexcept {
   return kForeseen * (way - share * trend_.way).norm() / tool_.radius + kForeseen * way_.length;
 }
 
-/// Of the vertices in `filled_`: column by column where that is possible, as most are never needed.
+/// Takes the compliance of the vertices in `filled_`: column by column where that is possible, as most are
+/// never needed.
 void ToolContact::take_compliance(const ToolTissue& tissue) {
   patch_.compliance.shape(3 * patch_.nodes(), 3 * patch_.nodes());
   patch_.source = tissue.traits().columns;

@@ -12,7 +12,7 @@ constexpr double kMaxPlaces = 64;  // on the axis of a tool that appears: whethe
 
 }  // namespace
 
-/// Whether a tool in contact has left the free organ so far behind that it only drags the surface along with
+/// True if a tool in contact has left the free organ so far behind that it only drags the surface along with
 /// it: a linear tissue would let itself be wrapped around the tool and follow it anywhere.
 bool ToolContact::escaped(const ToolPose& pose, const ToolTissue& tissue) const noexcept {
   if (now_.force.contacts == 0 || touchable().empty()) return false;
@@ -47,7 +47,7 @@ void ToolContact::place_outside(const ToolPose& pose, ToolTissue tissue) {
   }
 }
 
-/// Whether the tissue has closed over a tool that touched it, as after a change of shape beyond what its
+/// True if the tissue has closed over a tool that touched it, as after a change of shape beyond what its
 /// compliance predicted. Then the tool stands before the surface again, without a load, and has not arrived.
 /// Where that is farther away than a tool drags tissue, the surface is that of an equilibrium that was not
 /// found: the tool stays, without a load.
@@ -60,7 +60,7 @@ bool ToolContact::recover_from_inside(ToolTissue tissue) {
   return back > 0;
 }
 
-/// Where the tip was when the place `inside` on the axis, at that share of it, stood before `entry`.
+/// Returns where the tip was when the place `inside` on the axis, at that share of it, stood before `entry`.
 Vec3 ToolContact::place_at_entry(const ToolPose& pose, const Vec3& inside, double fraction,
                                  const Vec3& entry) const noexcept {
   const Vec3 outward = (entry - inside).normalized();

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kPart = 0.5, kMostParts = 64;  // of the way of a tip, in radii
 
-/// Whether a triangle's box comes within `reach` of a point: cheap, never wrong on the safe side.
+/// True if a triangle's box comes within `reach` of a point: cheap, never wrong on the safe side.
 bool may_reach(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p, double reach) {
   return ((a.cwiseMin(b).cwiseMin(c).array() - reach) <= p.array()).all() &&
          ((a.cwiseMax(b).cwiseMax(c).array() + reach) >= p.array()).all();

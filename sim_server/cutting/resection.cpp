@@ -51,7 +51,7 @@ void Resection::note_change() {
   changed_ = true;
 }
 
-/// What has come loose goes, or stays.
+/// Removes or keeps what has come loose.
 void Resection::judge(std::span<const Piece> pieces, Surface& surface) {
   for (const Piece& piece : pieces) {
     if (piece.held) continue;

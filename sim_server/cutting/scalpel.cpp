@@ -28,7 +28,7 @@ Vec3 centre_at(const CutMesh& mesh, std::span<const Vec3> positions, int tetrahe
   return 0.25 * sum;
 }
 
-/// Whether the line from `p` to `q` meets the triangle, on its border too.
+/// True if the line from `p` to `q` meets the triangle, on its border too.
 bool crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
   const double from = normal.dot(p - a), to = normal.dot(q - a);
@@ -43,7 +43,7 @@ bool passes_through(const BladeEdge& was, const BladeEdge& is, const Vec3& p, co
   return crosses(p, q, was[0], was[1], is[1]) || crosses(p, q, was[0], is[1], is[0]);
 }
 
-/// Of its middle, m.
+/// Returns the motion of its middle, m.
 Vec3 motion_of(const BladeEdge& was, const BladeEdge& is) {
   return 0.5 * (is[0] + is[1] - was[0] - was[1]);
 }
@@ -68,7 +68,7 @@ Triangle corners_of(const CutMesh& mesh, int face) {
           t[static_cast<std::size_t>(corner[2])]};
 }
 
-/// Whether an edge of what is left is one of the surface.
+/// True if an edge of what is left is one of the surface.
 bool is_on_surface(const CutMesh& mesh, int vertex, int towards) {
   return std::ranges::any_of(mesh.around(vertex), [&](int t) {
     const Tetrahedron& corners = mesh.mesh().tetrahedra[static_cast<std::size_t>(t)];
@@ -116,7 +116,8 @@ std::vector<int> Scalpel::around(const BladeEdge& was, const BladeEdge& is, std:
   return near;
 }
 
-/// Where edges go through the plane, that their nearer ends could slide along; the shortest way first.
+/// Returns where edges go through the plane, that their nearer ends could slide along; the shortest way
+/// first.
 std::vector<Scalpel::Crossing> Scalpel::crossings(const Plane& plane, std::span<const int> near,
                                                   std::span<const Vec3> are, const CutMesh& mesh) const {
   std::vector<Crossing> found;
@@ -148,14 +149,14 @@ bool Scalpel::stays(int vertex) const {
   return slid_[static_cast<std::size_t>(vertex)] != 0 || std::ranges::find(stored_, vertex) != stored_.end();
 }
 
-/// Of a vertex that does not stay.
+/// True if the vertex of a crossing may slide: one that does not stay.
 bool Scalpel::may_slide(const Crossing& crossing, const CutMesh& mesh) const {
   if (!mesh.is_free(crossing.vertex) || mesh.on_cut(crossing.vertex)) return false;
   return !mesh.on_surface(mesh.number_of(crossing.vertex)) ||
          is_on_surface(mesh, crossing.vertex, crossing.towards);
 }
 
-/// At rest; where that does the shapes around it no harm.
+/// Slides the vertex, at rest, where that does the shapes around it no harm.
 bool Scalpel::slide(const Crossing& crossing, CutMesh& mesh) const {
   const auto [volume, height] = shape_around(mesh, crossing.vertex);
   const Vec3 before = mesh.mesh().vertices[static_cast<std::size_t>(crossing.vertex)];

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kPause{1};  // between two looks for a word
 
-/// As MPI passes it about.
+/// A point as MPI passes it about.
 using Row = std::array<double, 3>;
 
 }  // namespace

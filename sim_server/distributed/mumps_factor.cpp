@@ -13,7 +13,7 @@
 namespace palpate::sim {
 namespace {
 
-/// What MUMPS is to do, as its manual numbers it, and words of our own.
+/// The jobs of MUMPS, as its manual numbers them, in words of our own.
 enum Job {
   kInitialize = -1,
   kEnd = -2,
@@ -192,7 +192,7 @@ void MumpsFactor::factor(const std::string& where) {
   costs_.memory = mumps_->memory(kReportUsed);
 }
 
-/// Where all is kept, S is A, and MUMPS, which would have nothing to do, is not asked.
+/// Takes all rows where all is stored: S is A then, and MUMPS, which would have nothing to do, is not called.
 void MumpsFactor::take_all(const SparseMatrix& lower, const std::string& where) {
   const auto size = static_cast<Eigen::Index>(stored_.size());
   require_memory(2.0 * sizeof(double) * static_cast<double>(size * size), free_memory(), where,

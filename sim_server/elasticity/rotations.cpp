@@ -112,7 +112,7 @@ PALPATE_INLINE void turn(Matrices<lanes>& R, const typename Lanes<lanes>::Mask& 
   }
 }
 
-/// As many as there are lanes.
+/// Turns as many as there are lanes.
 template <std::size_t lanes>
 PALPATE_INLINE void rotations(const Mat3* F, Mat3* R) noexcept {
   Matrices<lanes> m, c;

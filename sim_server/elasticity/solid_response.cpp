@@ -45,7 +45,7 @@ void Solid::each_element(std::span<const Vec3> x, std::size_t begin, std::size_t
   }
 }
 
-/// Of each tetrahedron, then of each vertex.
+/// Averages the dilation of each tetrahedron, then of each vertex.
 void Solid::average_dilation(std::span<const Vec3> x, Scratch& scratch) const {
   with_law(material_.law, [&]<class Law>() {
     const Moduli moduli = Law::moduli(material_);
@@ -250,7 +250,7 @@ void Solid::element_stiffness(const Element& element, const Mat3* F, const Mat3*
   }
 }
 
-/// Of fibres, and of the stress that is remembered, which turns with the tissue.
+/// Adds the stress of fibres, and that which is remembered, which turns with the tissue.
 void Solid::add_extras(const Element& element, int q, const Mat3& F, const Viscosity& viscosity,
                        Mat3* k) const {
   const Vec3* const g = element.gradients(q);
@@ -263,8 +263,8 @@ void Solid::add_extras(const Element& element, int q, const Mat3& F, const Visco
   }
 }
 
-/// Of the averaged dilation: V_a lambda (dtheta_a/dx) (dtheta_a/dx)^T for each vertex a, which ties all nodes
-/// of the tetrahedra around it.
+/// Adds the stiffness of the averaged dilation: V_a lambda (dtheta_a/dx) (dtheta_a/dx)^T for each vertex a,
+/// which ties all nodes of the tetrahedra around it.
 void Solid::add_nodal_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, double scale) const {
   std::vector<Vec3> along(4 * elements());  // V_e dtheta_e by node
   double lambda = 0;

@@ -117,7 +117,7 @@ void ElasticTensors::append(int vertex, const CutMesh& remaining) {
   if (!added_.empty()) added_.push_back(0);
 }
 
-/// Of what is `touched`, over the tetrahedra `around` it.
+/// Sums the tensors of what is `touched` anew, over the tetrahedra `around` it.
 void ElasticTensors::sum_anew(Touched& touched, std::vector<int>& around, const CutMesh& remaining,
                               const Material& material) {
   sort_each_once(touched);
@@ -220,7 +220,7 @@ void ElasticTensors::find_later_edges() {
   }
 }
 
-/// Of an edge that there is, j < i.
+/// Returns the tensor of an edge that there is, j < i.
 double* ElasticTensors::edge_tensor(int i, int j) {
   const auto from = neighbour_.begin() + first_edge_[i], to = neighbour_.begin() + first_edge_[i + 1];
   return edge_tensors_.data() + 9 * (std::lower_bound(from, to, j) - neighbour_.begin());

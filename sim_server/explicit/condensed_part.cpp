@@ -8,8 +8,8 @@
 namespace palpate::sim {
 namespace {
 
-/// What three columns from `first` on of a matrix with a row for each mode do with these amplitudes. Without
-/// modes it has no address.
+/// Returns what three columns from `first` on of a matrix with a row for each mode do with these amplitudes.
+/// Without modes it has no address.
 Vec3 moved_by(const Eigen::MatrixXd& modes, Eigen::Index first, const Eigen::VectorXd& amplitudes) noexcept {
   if (amplitudes.size() == 0) return Vec3::Zero();
   return modes.middleCols<3>(first).transpose() * amplitudes;

@@ -25,7 +25,7 @@ void sort_unique(std::vector<int>& numbers) {
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
-/// Where a number is in an ascending list that has it.
+/// Returns where a number is in an ascending list that has it.
 int place_in(const std::vector<int>& list, int number) {
   return static_cast<int>(std::ranges::lower_bound(list, number) - list.begin());
 }
@@ -37,7 +37,7 @@ void subtract_gram(const Eigen::MatrixXd& x, Eigen::MatrixXd& a) {
   a.triangularView<Eigen::StrictlyUpper>() = a.transpose();
 }
 
-/// What is held while the motion stands still: what is fixed, and all that moves; ascending.
+/// Returns what is held while the motion stands still: what is fixed, and all that moves; ascending.
 std::vector<int> held_by(const std::vector<int>& fixed, const std::vector<int>& places) {
   std::vector<int> held = fixed;
   for (int v = 0; v < static_cast<int>(places.size()); ++v) {
@@ -123,8 +123,8 @@ struct ModesOfPart {
   Eigen::MatrixXd shapes;  ///< (unknowns x k), of unit mass
 };
 
-/// Of modes of all parts together those of one. Where parts swing alike, a mode may be of several: what each
-/// part does in it is a mode of that, too.
+/// Returns the modes of one part of the modes of all together. Where parts swing alike, a mode may be of
+/// several: what each part does in it is a mode of that, too.
 ModesOfPart modes_of_part(const VibrationModes& all, const LinearStatics& statics,
                           const std::vector<int>& part_of, int part) {
   constexpr double kFraction = 1e-3;  // of a mode: less of it is rounding
@@ -151,8 +151,8 @@ ModesOfPart modes_of_part(const VibrationModes& all, const LinearStatics& static
   return own;
 }
 
-/// What of the mass of a part, where its border goes as one piece, is not in its modes: kg, the mean over
-/// three directions.
+/// Returns what of the mass of a part, where its border goes as one piece, is not in its modes: kg, the mean
+/// over three directions.
 double mass_beside_modes(const LinearStatics& statics, const std::vector<int>& rows,
                          const SparseMatrix& coupling, const Eigen::MatrixXd& driven,
                          const Eigen::ArrayXd& squares) {
@@ -184,7 +184,7 @@ std::vector<double> shared_mass(const TetMesh& mesh, const PartNodes& part, doub
   return fraction;
 }
 
-/// Of (unknowns x k) the rows of these mesh vertices, three each.
+/// Returns, of (unknowns x k), the rows of these mesh vertices, three each.
 Eigen::MatrixXd rows_of(const Eigen::MatrixXd& shapes, const LinearStatics& statics,
                         const std::vector<int>& vertices) {
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(3 * vertices.size()), shapes.cols());
@@ -310,7 +310,7 @@ void CondensedPart::condense(const ModelInputs& inputs, const LinearStatics& sta
   }
 }
 
-/// What modes do by themselves is no answer at once.
+/// Subtracts the modes from the static answer: what they do by themselves is no answer at once.
 void CondensedPart::take_modes_out(Part& part) {
   const Eigen::Index border = part.following.cols(), count = part.squares.size();
   const Eigen::VectorXd inverse_frequencies = part.squares.rsqrt();

@@ -31,7 +31,7 @@ void CuttableMotion::show_corners(std::span<const int> tetrahedra, const CutMesh
   }
 }
 
-/// Of a tetrahedron, with its corners that are condensed where they are at rest.
+/// Returns what is lost with a tetrahedron, its condensed corners where they are at rest.
 CuttableModel::Removed CuttableMotion::lost_with(int tetrahedron, const CutMesh& remaining) const {
   const auto t = static_cast<std::size_t>(tetrahedron);
   const Tetrahedron& corners = remaining.mesh().tetrahedra[t];
@@ -56,7 +56,7 @@ CuttableModel::Removed CuttableMotion::lost_with(int tetrahedron, const CutMesh&
   return lost;
 }
 
-/// What the contact of the last sub-step did is done by the tissue that bore it.
+/// Ends the contact of the last sub-step on the tissue that bore it.
 void CuttableMotion::end_contact() noexcept {
   if (!state_.ended) end_sub_step();
   state_.ended = true;
@@ -98,7 +98,7 @@ void CuttableMotion::part(std::span<const Slide> slides, const Parting& parting,
   continue_with_body();
 }
 
-/// What is in motion is where the body says.
+/// Moves what is in motion to where the body says.
 void CuttableMotion::continue_with_body() noexcept {
   update_free(state_.moving);
   become_free(state_.moving);

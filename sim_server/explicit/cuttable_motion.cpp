@@ -18,7 +18,7 @@ const RayleighDamping& rayleigh_of(const Scene& scene) {
   return scene.deformation.of<RayleighDamping>();
 }
 
-/// For all that may ever be in motion.
+/// Returns the scaling for all that may ever be in motion.
 MassScaling scaling_for(const ModelInputs& inputs, const RegionInMotion* region) {
   step_period(inputs.scene);  // before any work
   require_held_tissue(inputs);
@@ -249,7 +249,7 @@ void CuttableMotion::update_free(std::span<const int> vertices) noexcept {
   }
 }
 
-/// What a load on a vertex in motion does over the sub-step adds to what all else did.
+/// Ends a sub-step: what a load on a vertex in motion did over it adds to what all else did.
 void CuttableMotion::end_sub_step() noexcept {
   for (const VertexLoad& load : state_.loads) {
     const int first = body_->first[static_cast<std::size_t>(load.vertex)];

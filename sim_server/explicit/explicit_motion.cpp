@@ -14,7 +14,7 @@ constexpr int kMostProducts = 1000;    // of the power iteration, which ends soo
 constexpr double kSettled = 1e-6;      // growth of the Rayleigh quotient
 constexpr double kMostSubSteps = 2e4;  // no step of so many is in time
 
-/// How many threads share a product: at most as many as it has parts.
+/// Returns how many threads share a product: at most as many as it has parts.
 int threads_for(const ElasticTensors& tensors, int most) {
   return std::min(most > 0 ? most : static_cast<int>(threads()), static_cast<int>(tensors.parts()));
 }
@@ -141,7 +141,7 @@ void ExplicitMotion::MultiplyPart::operator()(std::uint32_t part) const noexcept
   of.tensors_.multiply_part(part, of.bent_.data(), of.resistance_.data(), of.ahead_);
 }
 
-/// Where it was begun, by now it also is of what kicks did.
+/// Multiplies, or finishes a product that was started, which then also is of what kicks did.
 void ExplicitMotion::multiply() noexcept {
   if (!begun_) return team_.run(static_cast<std::uint32_t>(tensors_.parts()), multiply_part_);
   team_.finish();
@@ -186,7 +186,7 @@ void ExplicitMotion::advance(std::size_t begin, std::size_t end, double h,
   }
 }
 
-/// Of vertices `begin` to `end`: what the next product is of.
+/// Updates, of vertices `begin` to `end`, the displacement that the next product is of.
 void ExplicitMotion::bend(std::size_t begin, std::size_t end) noexcept {
   const std::size_t numbers = 3 * static_cast<std::size_t>(columns_), far = numbers_per_vertex();
   for (std::size_t vertex = begin; vertex < end; ++vertex) {

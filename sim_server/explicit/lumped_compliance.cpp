@@ -8,7 +8,7 @@ LumpedCompliance::LumpedCompliance(const ElasticTensors& tensors, std::span<cons
                                    CondensedPart* rest, double h, double held_stiffness)
     : tensors_(tensors), first_(first), rest_(rest), h_(h), held_compliance_(1 / held_stiffness) {}
 
-/// How a vertex moves per force on it, m/N.
+/// Returns how a vertex moves per force on it, m/N.
 Mat3 LumpedCompliance::own(int vertex) const noexcept {
   const int first = first_[static_cast<std::size_t>(vertex)];
   if (first >= 0) return h_ * h_ / tensors_.masses()[static_cast<std::size_t>(first / 3)] * Mat3::Identity();
@@ -16,7 +16,7 @@ Mat3 LumpedCompliance::own(int vertex) const noexcept {
   return held_compliance_ * Mat3::Identity();
 }
 
-/// How one vertex moves per force on another, m/N.
+/// Returns how one vertex moves per force on another, m/N.
 Mat3 LumpedCompliance::block(int vertex, int other) const noexcept {
   if (vertex == other) return own(vertex);
   if (rest_ != nullptr && rest_->has(vertex) && rest_->has(other)) return rest_->compliance(vertex, other);

@@ -3,7 +3,7 @@
 namespace palpate::sim {
 namespace {
 
-/// Of each vertex, whether it is one of a tetrahedron of which `chosen` says so.
+/// Returns, of each vertex, whether it is one of a tetrahedron of which `chosen` says so.
 std::vector<char> vertices_of(const TetMesh& mesh, const std::vector<char>& chosen) {
   std::vector<char> of_vertex(mesh.vertices.size(), 0);
   for (std::size_t t = 0; t < chosen.size(); ++t) {

@@ -18,7 +18,8 @@ std::size_t numbers(const Eigen::MatrixXf& left, const Eigen::MatrixXf& right) {
   return static_cast<std::size_t>(left.size() + right.size());
 }
 
-/// Of the matrix in a file: two numbers of single precision to one of its own, behind the ranks.
+/// Returns the columns of the matrix in a file: two numbers of single precision to one of its own, behind the
+/// ranks.
 Eigen::Index packed_columns(std::size_t pairs, std::size_t floats) {
   return (static_cast<Eigen::Index>(pairs + (floats + 1) / 2) + kPackedRows - 1) / kPackedRows;
 }
@@ -43,7 +44,7 @@ BlockLowRankMatrix::BlockLowRankMatrix(std::vector<int> begins, double tolerance
   part_.resize(largest);
 }
 
-/// Of a pair of tiles, `first` <= `second`.
+/// Returns the index of a pair of tiles, `first` <= `second`.
 std::size_t BlockLowRankMatrix::index(int first, int second) {
   return static_cast<std::size_t>(second) * (static_cast<std::size_t>(second) + 1) / 2 +
          static_cast<std::size_t>(first);
@@ -114,7 +115,7 @@ void BlockLowRankMatrix::add_product(std::span<const VertexLoad> loads, Eigen::V
   moved.noalias() += shapes_.transpose() * amplitudes_;
 }
 
-/// What the loads on one tile do to all points.
+/// Adds what the loads on one tile do to all points.
 void BlockLowRankMatrix::add_of_tile(int loaded, std::span<const VertexLoad> loads,
                                      Eigen::VectorXd& moved) noexcept {
   const auto for_loads = [&](const auto& work) {

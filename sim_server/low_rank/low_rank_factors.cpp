@@ -9,7 +9,7 @@ namespace {
 constexpr double kOfColumns =
     0.5;  // of the tolerance, that the columns may leave; the singular values the rest
 
-/// As many singular values as leave out no more than `omitted` in Frobenius' norm.
+/// Returns how many singular values leave out no more than `omitted` in Frobenius' norm.
 Eigen::Index needed(const Eigen::VectorXd& singular, double omitted) {
   Eigen::Index count = singular.size();
   double squares = 0;

@@ -52,7 +52,7 @@ std::string both_at(const TetMesh& mesh, int a, int b) {
   return fmt::format("vertices {} and {} are both at ({:g}, {:g}, {:g})", a, b, x[0], x[1], x[2]);
 }
 
-/// What keeps vertices from being merged: an example and a remedy, or nothing.
+/// The reason why vertices are not merged: an example and a remedy, or nothing.
 using Obstacle = std::pair<std::string, std::string>;
 
 Obstacle within_a_tetrahedron(const TetMesh& mesh, const std::vector<int>& first) {
@@ -93,7 +93,7 @@ bool has_repeated(const TetMesh& mesh) {
   return std::ranges::adjacent_find(sorted) != sorted.end();
 }
 
-/// What `merged` has that `mesh` had not.
+/// Returns what `merged` has that `mesh` had not.
 Obstacle made_by_merging(const TetMesh& mesh, const TetMesh& merged) {
   if (has_repeated(merged)) return {"two tetrahedra lie in one place", "remove one of the two bodies"};
   const OuterFaces before = outer_faces(mesh), after = outer_faces(merged);

@@ -28,7 +28,7 @@ constexpr double kReadingTakes = 8;
 constexpr double kSmallFile = 1e6;  // bytes; to ask for the free memory would take longer than to read it
 enum GmshElement : std::int64_t { kGmshTriangle = 2, kGmshTetrahedron = 4 };
 
-/// How many nodes an element of Gmsh's `type` has; 0 for a type this reader has never heard of.
+/// Returns how many nodes an element of Gmsh's `type` has; 0 for a type this reader has never heard of.
 int nodes_of_type(std::int64_t type) {
   constexpr std::array<int, 32> kNodes{0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
                                        8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};

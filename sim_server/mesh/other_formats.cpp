@@ -39,7 +39,7 @@ std::optional<int> take_number(std::string_view& text) {
   return number;
 }
 
-/// Whether all types of cells in a list are known, and none has an inside: `count` of them, or all there are.
+/// True if all types of cells in a list are known, and none has an inside: `count` of them, or all there are.
 bool are_flat(std::string_view list, std::optional<int> count) {
   int read = 0;
   for (; !count || read < *count; ++read) {
@@ -65,7 +65,7 @@ bool is_legacy_vtk(std::string_view bytes) {
   return bytes.starts_with("# vtk DataFile");
 }
 
-/// Of the legacy format: text or big-endian bytes under keywords.
+/// True for a surface of the legacy format: text or big-endian bytes under keywords.
 bool is_legacy_surface(std::string_view bytes) {
   const auto set = text_after(bytes.substr(0, kHeader), "DATASET ");
   if (!set) return false;
@@ -80,7 +80,7 @@ bool is_legacy_surface(std::string_view bytes) {
   return binary ? are_flat_bytes(*types, static_cast<std::size_t>(*count)) : are_flat(*types, *count);
 }
 
-/// Of the XML format: what it calls itself, and types of cells that are written as text.
+/// True for a surface of the XML format: what it calls itself, and types of cells that are written as text.
 bool is_xml_surface(std::string_view bytes) {
   if (bytes.substr(0, kHeader).find("type=\"PolyData\"") != std::string_view::npos) return true;
   const std::size_t name = bytes.find("Name=\"types\"");
@@ -96,7 +96,7 @@ bool is_vtk_surface(std::string_view bytes) {
   return bytes.substr(0, kHeader).find("<VTKFile") != std::string_view::npos && is_xml_surface(bytes);
 }
 
-/// Which file Gmsh fills, and what makes it of this one: tried with Gmsh 4.8 and meshio 5.
+/// A file that Gmsh fills, and what makes it of this one: tried with Gmsh 4.8 and meshio 5.
 struct Filling {
   std::string file, before;
 };

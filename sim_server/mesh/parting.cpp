@@ -12,7 +12,7 @@ CutMesh::CutMesh(TetMesh& mesh, std::vector<char> removable, Surface& surface, s
   add_spares(held, surface);
 }
 
-/// At the places of those of which they may become copies.
+/// Adds spare vertices at the places of those of which they may become copies.
 void CutMesh::add_spares(std::span<const int> held, Surface& surface) {
   std::vector<char> may_split(mesh_->vertices.size());
   for (std::size_t t = 0; t < removable_.size(); ++t) {
@@ -92,8 +92,8 @@ Parting CutMesh::part(std::span<const int> faces, Surface& surface) {
   return parting;
 }
 
-/// What is left around a vertex, by what hangs together by faces that have it; each ascending, and so their
-/// first ones.
+/// Returns what is left around a vertex, by what hangs together by faces that have it; each ascending, and so
+/// their first ones.
 std::vector<std::vector<int>> CutMesh::fans_around(int vertex) const {
   std::vector<int> waiting;
   std::ranges::copy_if(around(vertex), std::back_inserter(waiting), [this](int t) { return remains(t); });

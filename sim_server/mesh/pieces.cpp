@@ -124,7 +124,7 @@ std::vector<Piece> PieceFinder::cut_off(const CutMesh& mesh, std::span<const int
                     [&](std::span<const int> of_body) { return fronts_around(mesh, of_body); });
 }
 
-/// Whether a held vertex of this one, which is gone, is of nothing else of its body any more.
+/// True if a held vertex of this one, which is gone, is of nothing else of its body any more.
 bool PieceFinder::releases(const CutMesh& mesh, int removed) const {
   const int body = body_of_[static_cast<std::size_t>(removed)];
   const auto holds = [&](int t) { return mesh.remains(t) && body_of_[static_cast<std::size_t>(t)] == body; };
@@ -137,7 +137,7 @@ std::vector<Piece> PieceFinder::separated(const CutMesh& mesh, std::span<const i
   return cut_off_by(mesh, tetrahedra, [&](std::span<const int> of_body) { return fronts_at(of_body); });
 }
 
-/// What is cut off is a body of its own from now on.
+/// Makes what is cut off a body of its own from now on.
 void PieceFinder::name_bodies(std::vector<Piece>& pieces) {
   for (const Piece& piece : pieces) {
     for (const int t : piece.tetrahedra)

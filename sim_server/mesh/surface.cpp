@@ -39,7 +39,7 @@ std::vector<Face> sorted_faces(const TetMesh& mesh) {
   return faces;
 }
 
-/// Which way round the face is, against its sorted vertices.
+/// Returns which way round the face is, against its sorted vertices.
 bool is_even(const Triangle& t) {
   return (t[0] < t[1]) + (t[1] < t[2]) + (t[2] < t[0]) == 2;
 }

@@ -24,7 +24,7 @@ DynamicsSettings settings_of(const ModelInputs& inputs) {
   return settings;
 }
 
-/// Whether its [[fixed]], held along all axes, are all that holds the body.
+/// True if its [[fixed]], held along all axes, are all that holds the body.
 bool held_by_vertices(const Scene& scene) {
   const auto displaces = [](const Load& load) { return load.kind == Load::Kind::kDisplacement; };
   const auto on_rails = [](const FixedRegion& fixed) { return fixed.axes != kAllAxes; };
@@ -32,7 +32,7 @@ bool held_by_vertices(const Scene& scene) {
          std::ranges::none_of(scene.loads, displaces);
 }
 
-/// Whether slow modes about rest are published: of a body that only tools move, or also supports of
+/// True if slow modes about rest are published: of a body that only tools move, or also supports of
 /// which it is known how it follows them.
 bool publishes_modes(const ModelInputs& inputs) {
   const auto* const published = inputs.scene.deformation.find<ClientModes>();
@@ -42,14 +42,14 @@ bool publishes_modes(const ModelInputs& inputs) {
          (!supports_move(inputs.scene) || inputs.scene.material->is_linear());
 }
 
-/// Of each node: its place among the free ones, or -1.
+/// Returns, of each node, its place among the free ones, or -1.
 std::vector<int> places_of(const LinearStatics& statics) {
   std::vector<int> places;
   for (const int first : statics.dofs.first) places.push_back(first < 0 ? -1 : first / 3);
   return places;
 }
 
-/// Of each of these places, kg.
+/// Returns the mass of each of these places, kg.
 std::vector<double> masses_of_places(const LinearStatics& statics) {
   const Eigen::VectorXd masses = statics.masses();
   std::vector<double> of_places;
@@ -119,7 +119,7 @@ Implicit::Implicit(const ModelInputs& inputs)
   inputs.progress(name_of(Stage::kFactor), 1);
 }
 
-/// Where the body is at time 0, and how fast it goes.
+/// Sets where the body is at time 0, and how fast it goes.
 void Implicit::begin(const ModelInputs& inputs) {
   const auto flexibility = [this](const Eigen::MatrixXd& f) { return dynamics_.factor().matrix().solve(f); };
   const auto responses =
@@ -243,8 +243,8 @@ FreeMotion Implicit::restore(const std::any& saved) {
   return motion();
 }
 
-/// After each iteration: the surface at the trial point, and without the loads that the linearisation was
-/// made under. Drops the columns of another factor.
+/// Updates the surface after each iteration: at the trial point, and without the loads that the linearisation
+/// was made under. Drops the columns of another factor.
 void Implicit::update_surface() {
   if (step_.factors != dynamics_.factor().count()) {
     step_.factors = dynamics_.factor().count();
@@ -258,7 +258,7 @@ void Implicit::update_surface() {
   apply_loads(linearised_loads_, -1, free_);
 }
 
-/// Of the scene and of the tools, at the trial point (nodes, N).
+/// Returns the forces of the scene and of the tools at the trial point (nodes, N).
 std::span<const Vec3> Implicit::external_forces() {
   std::ranges::fill(external_, Vec3::Zero());
   scene_loads_.add_forces(dynamics_.position(), external_);

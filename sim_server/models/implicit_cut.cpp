@@ -20,7 +20,7 @@ double mass_at(int node, const CutMesh& remaining, double density) {
 
 }  // namespace
 
-/// What the contact of the last step did is done first, by the tissue that bore it.
+/// Ends the step in hand: what the contact of the last step did is done first, by the tissue that bore it.
 void Implicit::end_step_in_hand() {
   if (!step_.in_step) return;
   apply_new_loads();

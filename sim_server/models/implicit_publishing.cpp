@@ -24,7 +24,7 @@ Mat3 Implicit::later_compliance(std::span<const VertexLoad> loads, double second
   return 0.5 * (yields + yields.transpose());
 }
 
-/// Where supports alone have led the body (nodes, m), and how fast it goes by them (m/s).
+/// Returns where supports alone have led the body (nodes, m), and how fast it goes by them (m/s).
 Implicit::Carried Implicit::carried() const {
   Carried carried{solid_.rest(), std::vector<Vec3>(solid_.rest().size(), Vec3::Zero())};
   for (const SupportResponse& response : responses_)
@@ -32,7 +32,8 @@ Implicit::Carried Implicit::carried() const {
   return carried;
 }
 
-/// From there, by unknowns, m: of the step as it will end, where the last loads lead.
+/// Returns the displacement from there, by unknowns, m: of the step as it will end, where the last loads
+/// lead.
 Eigen::VectorXd Implicit::displacement(std::span<const Vec3> from) const {
   const FreeDofs& dofs = dynamics_.dofs();
   Eigen::VectorXd u = Eigen::VectorXd::Zero(dofs.count);
@@ -51,7 +52,7 @@ void Implicit::store() {
   relaxation_->advance(period_, published_->amplitudes(numbers(displacement(solid_.rest()))), loads_);
 }
 
-/// Of the step as it will end.
+/// Reads the modes of the step as it will end.
 void Implicit::read_modes(ModalMotion& state) {
   const FreeDofs& dofs = dynamics_.dofs();
   const auto [from, along] = carried();

@@ -25,9 +25,9 @@ ElasticTensors assemble(const ModelInputs& inputs) {
   return {inputs.mesh, *scene.material, inputs.fixed};
 }
 
-/// Of `steps` sub-steps in a period: at each one, or where these are too many at its end alone. A force that
-/// is held over a few of them leaves waves which the next one has to answer, so that contact chatters (seen
-/// at 3, 13 and 20 instants); a period of many lets them run off.
+/// Returns how many of `steps` sub-steps in a period are instants: all, or the last alone where these are too
+/// many. A force that is held over a few of them leaves waves which the next one has to answer, so that
+/// contact chatters (seen at 3, 13 and 20 instants); a period of many lets them run off.
 int usual_instants(double steps) {
   constexpr double kMost = 100;  // instants, as in Reduced::usual_instants
   return steps <= kMost ? static_cast<int>(steps) : 1;
@@ -165,7 +165,7 @@ void TensorMass::run_period(ExplicitMotion& motion, const std::vector<double>& f
   motion.run(sub_steps_, sub_step_, force);
 }
 
-/// Where the body goes free of loads: by itself, and by its supports.
+/// Updates where the body goes free of loads: by itself, and by its supports.
 void TensorMass::update_free() noexcept {
   const std::span<const Vec3> from = supports_ ? supports_->positions() : rest_;
   std::ranges::copy(from, free_.begin());
@@ -174,7 +174,7 @@ void TensorMass::update_free() noexcept {
   }
 }
 
-/// Of the loads that move something: their first number, and their force.
+/// Calls `act` with each load that moves something: its first number, and its force.
 template <class Act>
 void TensorMass::for_loads(const Act& act) const {
   for (const VertexLoad& load : loads_) {

@@ -7,7 +7,8 @@
 namespace palpate::sim {
 namespace {
 
-/// Of each tetrahedron, whether its centre is in a region, or of a surface tag any of its vertices on it.
+/// Returns, of each tetrahedron, whether its centre is in a region, or of a surface tag any of its vertices
+/// on it.
 std::vector<char> in_region(const Region& region, const TetMesh& mesh) {
   std::vector<int> tagged;
   const bool by_tag = !region.surface_tag.empty();

@@ -7,7 +7,7 @@
 namespace palpate::sim {
 namespace {
 
-/// Which [[fixed]] each corner belongs to: -1 for a free one.
+/// Returns which [[fixed]] each corner belongs to: -1 for a free one.
 std::vector<int> region_of_corners(const Scene& scene, const TetMesh& mesh) {
   std::vector<int> region(static_cast<std::size_t>(mesh.corners()), -1);
   for (std::size_t r = scene.fixed.size(); r-- > 0;) {

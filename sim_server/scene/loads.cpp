@@ -11,7 +11,8 @@ Vec3 area_of(std::span<const Vec3> x, const std::array<int, 3>& corner) {
   return 0.5 * (x[corner[1]] - x[corner[0]]).cross(x[corner[2]] - x[corner[0]]);
 }
 
-/// What becomes the copy of a vertex is of no tetrahedron at first, and those that are held stay one.
+/// Releases spare vertices: what becomes the copy of a vertex is of no tetrahedron at first, and those that
+/// are held stay one.
 void release_spares(const TetMesh& mesh, std::vector<HeldAxes>& held) {
   std::vector<char> is_corner(held.size(), 0);
   for (const Tetrahedron& t : mesh.tetrahedra) {
@@ -52,7 +53,7 @@ Loads::Loads(const Scene& scene, const TetMesh& mesh, const Surface& surface, co
   }
 }
 
-/// What is held, and where: a later displacement counts over an earlier one, and over a [[fixed]].
+/// Finds what is held, and where: a later displacement counts over an earlier one, and over a [[fixed]].
 void Loads::hold(const Scene& scene, const TetMesh& mesh) {
   held_.assign(rest_.size(), 0);
   std::vector<Vec3> moved(rest_.size(), Vec3::Zero());

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kComesNearer = 0.02;  // m: so far tissue at rest beyond reach may deform towards a tool
 
-/// Of the device's grip, in its own frame.
+/// Returns the box of the device's grip, in its own frame.
 Box device_box(const Config& config) {
   if (config.has("box")) {
     const auto [min, max] = config.box("box");
@@ -26,7 +26,7 @@ Box device_box(const Config& config) {
   return {row.min, row.max};
 }
 
-/// Where `device` is put into the scene as the client's [workspace] does.
+/// Returns where `device` is put into the scene as the client's [workspace] does.
 Reach read_workspace_of(const Config& config, const Tool& shape) {
   const Workspace workspace = read_workspace(config);
   const Box device = device_box(config);

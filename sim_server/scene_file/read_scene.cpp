@@ -57,7 +57,7 @@ void require_material_of(const Scene& scene, const DeformationModelRow& row) {
        scene.material_where, row.name, also, models_that(takes));
 }
 
-/// Of a model that could have the body fly.
+/// Refuses a body that nothing holds, unless the model could have it fly.
 void require_flight(const Scene& scene) {
   if (scene.material && scene.material->law == ElasticLaw::kLinear)
     fail(
@@ -160,7 +160,7 @@ void read_grasp(const Config& config, ToolSettings& tool) {
   tool.grasp_where = config.where("grasp_place");
 }
 
-/// What else a shape needs; what belongs to another is an unknown key.
+/// Reads what else a shape needs; what belongs to another is an unknown key.
 void read_shape(const Config& config, Tool& tool) {
   const std::string shape = config.text("shape", "sphere");
   if (shape == "sphere") return;

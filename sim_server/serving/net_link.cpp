@@ -14,7 +14,7 @@ namespace {
 /// A client of ours asks for one page a millisecond; a megabyte a second carries two.
 constexpr double kPagesPerSecond = 2000, kPagesAtOnce = 32;
 
-/// What a session would begin with.
+/// Returns what a session would begin with.
 protocol::ServerSessions::Fresh fresh_for(const Datagram& datagram) {
   if (!std::holds_alternative<protocol::Hello>(datagram.message)) return {};
   return {protocol::random_value<std::uint64_t>() | 1, protocol::random_value<protocol::Nonce>()};
@@ -102,7 +102,7 @@ void NetLink::refuse(Verdict verdict, std::span<const std::byte> bytes, const En
     answer({.answer = {{{}, protocol::Refuse{{}, 0, protocol::RefuseReason::kVersion}}}}, to);
 }
 
-/// To the simulation, with the path that led there in this session.
+/// Passes a state on to the simulation, with the path that led there in this session.
 void NetLink::pass_on(std::uint64_t session, const protocol::ToolState& state) {
   SessionInput& input = inputs_[state.tool];
   if (input.session != session) input = {};

@@ -30,7 +30,7 @@ protocol::ModalLoads on_the_wire(const Eigen::VectorXd& loads) noexcept {
   return published;
 }
 
-/// What the force is around the tool, now and ahead, and how the other tools move it.
+/// Publishes the force around the tool, now and ahead, and how the other tools move it.
 void publish_nearby(const ToolAnswer& answer, ForceSample& sample) noexcept {
   if (answer.at_tool) {
     sample.flags |= ForceSample::kHasTangent;
@@ -49,7 +49,7 @@ void publish_nearby(const ToolAnswer& answer, ForceSample& sample) noexcept {
   }
 }
 
-/// Where the `surface` that the client knows is, and how it swings.
+/// Publishes where the `surface` that the client knows is, and how it swings.
 void publish_surface(const ToolAnswer& answer, const protocol::SurfaceState& surface,
                      ForceSample& sample) noexcept {
   if (!answer.surface_shift_W) return;
@@ -68,7 +68,7 @@ ToolPath::Point point_of(const protocol::ToolState& state) noexcept {
   return {state.t_ns, pose_of(state), state.v_W};
 }
 
-/// How a tool went from one point to the next, by its velocities and its own clock.
+/// Returns how a tool went from one point to the next, by its velocities and its own clock.
 Bend bend_between(const ToolPath::Point& before, const ToolPath::Point& now) noexcept {
   const double dt = 1e-9 * (static_cast<double>(now.t_ns) - static_cast<double>(before.t_ns));
   if (!(dt > 0 && dt < kLongestBend)) return {};
@@ -112,7 +112,8 @@ void ServedTools::make_pagers() {
   }
 }
 
-/// Where the simulation tells another surface from this step on, or none. Without memory for it, none.
+/// Follows the simulation, where it publishes another surface from this step on, or none. Without memory for
+/// it, none.
 void ServedTools::follow_surface() noexcept {
   if (simulation_.published_version() == published_version_) return;
   published_version_ = simulation_.published_version();
@@ -192,7 +193,7 @@ ToolInput ServedTools::input_of(std::size_t tool, const SessionInput& input) noe
   return published;
 }
 
-/// Where the tool was at the instants since the state that the step before answered.
+/// Adds where the tool was at the instants since the state that the step before answered.
 void ServedTools::follow_path(std::size_t tool, const SessionInput& input, ToolInput& published) noexcept {
   std::vector<PathPoint>& points = paths_[tool];
   const bool was_lost = (holders_[tool].before.flags & protocol::ToolState::kDeviceLost) != 0;

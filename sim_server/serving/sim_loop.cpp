@@ -71,7 +71,7 @@ void SimLoop::run(const std::stop_token& stop) noexcept {
   }
 }
 
-/// Whether any of them is new.
+/// True if any of them is new.
 bool SimLoop::read_inputs() noexcept {
   bool any = false;
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
@@ -130,7 +130,7 @@ void SimLoop::count_beyond(std::size_t tool) noexcept {
   went_beyond[tool].store(true, std::memory_order_relaxed);
 }
 
-/// For who never touches: how much was missing.
+/// Measures by how much a tool misses the tissue, for whoever never touches it.
 void SimLoop::measure_distance(Time now) noexcept {
   if (now < next_search_) return;
   next_search_ = now + kIdlePeriod;

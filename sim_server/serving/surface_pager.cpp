@@ -80,8 +80,8 @@ void SurfacePager::put_in_order() {
   for (Triangle& t : triangles_) t = {number[t[0]], number[t[1]], number[t[2]]};
 }
 
-/// Of the geometry and of how compliant each vertex is; of a surface that can be cut, which is told while it
-/// is felt, of when it is told instead of that. Never 0.
+/// Hashes the geometry and how compliant each vertex is; of a surface that can be cut, which is published
+/// while it is rendered, when it was published in place of that. Never 0.
 std::uint32_t SurfacePager::hash() noexcept {
   Fnv1a hash;
   hash.add(triangles_.data(), triangles_.size() * sizeof(Triangle));
@@ -164,7 +164,7 @@ void SurfacePager::fill_shapes(std::uint32_t number, SurfacePage& out) const noe
         published_->shapes.block(3 * rows[i], first, 3, count).cast<float>();
 }
 
-/// Whether the compliance there is known by now.
+/// True if the compliance there is known by now.
 bool SurfacePager::knows_tile(std::uint32_t number) const noexcept {
   if (nearby_ == nullptr) return true;
   const auto known = [this](int v) { return std::ranges::binary_search(nearby_->compliant.vertices, v); };

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::uint64_t kLongAgo = 1'000'000'000;  // ns
 
-/// From an earlier to a later time, whatever they are: a client may send any.
+/// Returns the time from an earlier to a later one, whatever they are: a client may send any.
 std::uint64_t ns_between(std::int64_t earlier, std::int64_t later) noexcept {
   return static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(earlier);
 }

@@ -136,7 +136,7 @@ void VirtualSession::step(const ToolState& state, double steps_due) {
   in_transit_.back().sample.tool = state.tool;
 }
 
-/// Of all tools at the time of this one's state, with the paths that led there.
+/// Notes the paths of all tools that led to where they are at the time of this one's state.
 void VirtualSession::note_paths(const ToolState& state) {
   const double t = to_seconds(Time{state.t_ns}), tick = 1 / link_.ticks_hz;
   for (std::size_t i = 0; i < motions_.size(); ++i) {
@@ -183,8 +183,8 @@ void VirtualSession::send_shape(Time t) {
   client_pages_.sent.clear();
 }
 
-/// What the client lacks of it by now, around where the tool is, in the frame of the organ at rest. Of one
-/// that is told no more while a sample was on its way, nothing.
+/// Sends what the client lacks of the surface by now, around where the tool is, in the frame of the organ at
+/// rest; nothing of a surface that was withdrawn while a sample was on its way.
 void VirtualSession::send_surface(const ForceSample& sample, Time t) {
   const SurfacePager& pager = *served_.pager(link_.tool);
   if (sample.surface.version != pager.state().version) return;
@@ -211,7 +211,7 @@ void VirtualSession::keep_page(std::uint32_t page, std::uint32_t first_tile, Tim
   client_pages_.sent.push_back(tile);
 }
 
-/// Whether there is one by now. A client that asks in vain learns nothing, so it need not be in a capture.
+/// True if there is one by now. A client that asks in vain learns nothing, so it need not be in a capture.
 bool VirtualSession::send_page(std::uint32_t number, Time t) {
   SurfacePage page;
   if (!served_.pager(link_.tool)->page(number, page) || page.page != number) return false;

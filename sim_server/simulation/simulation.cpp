@@ -223,7 +223,7 @@ void Simulation::count_flagged() noexcept {
   ++reason;
 }
 
-/// After a step that threw. The forces of a tissue that answers no more fade.
+/// Holds the answers after a step that threw. The forces of a tissue that answers no more fade.
 void Simulation::hold_answers(std::span<const ToolInput> inputs) noexcept {
   for (std::size_t i = 0; i < answers_.size(); ++i) {
     ToolForce held = inputs[i].pose ? answers_[i] : ToolForce{};
@@ -284,8 +284,8 @@ void Simulation::differentiate(std::size_t tool) {
   tools_[tool].differentiate(tissue_.touched_by(tool));
 }
 
-/// Where contact is solved at an instant of a step: where the tool is then, or, where the model's force
-/// leads, will be at the next; after the last, going on along the parabola through where it was lately.
+/// Returns where contact is solved at an instant of a step: where the tool is then, or, where the model's
+/// force leads, will be at the next; after the last, going on along the parabola through where it was lately.
 PathPoint Simulation::contact_point(std::size_t tool, const ToolInput& input, int instant) const {
   if (!tissue_.traits.leading_force) return at_instant(tool, input, instant);
   if (instant < instants()) return at_instant(tool, input, instant + 1);
@@ -310,7 +310,7 @@ void Simulation::add_recent(std::size_t tool, const ToolPose& pose) {
   were.insert(were.begin(), pose);
 }
 
-/// Where a tool is at an instant of a step, from 1 to the last.
+/// Returns where a tool is at an instant of a step, from 1 to the last.
 PathPoint Simulation::at_instant(std::size_t tool, const ToolInput& input, int instant) const {
   const bool last = input.path.size() + 1 == static_cast<std::size_t>(instants());
   if (instant == instants()) return {*input.pose, last ? input.bend : Bend{}};
@@ -361,7 +361,7 @@ void Simulation::solve_contacts() {
   if (!found || !balanced()) flag_contacts();
 }
 
-/// Whether some of the surface is at no finite place, or beyond any that an organ that is held can get to.
+/// True if some of the surface is at no finite place, or beyond any that an organ that is held can get to.
 bool Simulation::ran_away() const noexcept {
   const bool loose = cut_ && cut_->resection().totals().loose_pieces > 0;  // these may go anywhere
   const double most = loose ? kAnywhere * kAnywhere : organ_.furthest * organ_.furthest;

@@ -15,7 +15,7 @@ constexpr double kMaxAhead = 2e-3;    // m; without a bound, fast tools fare wor
 
 }  // namespace
 
-/// How the tools move the surface under each other, if any client requests it.
+/// Couples the tools: how they move the surface under each other, if any client requests it.
 void Simulation::couple(std::span<const ToolInput> inputs) {
   status_.coupled = coupling_ && tissue_.traits.publishes_tangents &&
                     std::ranges::any_of(inputs, [](const ToolInput& input) {
@@ -31,8 +31,8 @@ void Simulation::couple(std::span<const ToolInput> inputs) {
   coupling_->update(tissue_, tools_, std::span(velocities).first(tools_.size()));
 }
 
-/// At `there`, with the places of the other tools held, not their loads: they give way, and the surface comes
-/// along. The tangent is symmetric, as on the wire.
+/// Linearises at `there`, with the places of the other tools held, not their loads: they yield, and the
+/// surface comes along. The tangent is symmetric, as on the wire.
 Linearisation Simulation::linearise_coupled(std::size_t tool, const Vec3& p_W, const Vec3& there,
                                             const ToolForce* known) {
   const Mat3* const relative = status_.coupled ? &coupling_->relative_motion(tool) : nullptr;
@@ -43,7 +43,7 @@ Linearisation Simulation::linearise_coupled(std::size_t tool, const Vec3& p_W, c
   return l;
 }
 
-/// What was asked of this tool beyond its force.
+/// Adds what was requested of this tool beyond its force.
 void Simulation::add_wanted(std::size_t tool, const ToolInput& input) {
   ToolAnswer& answer = answers_[tool];
   if (!input.pose || answer.flagged) return;
@@ -119,7 +119,7 @@ Vec3 Simulation::surface_shift(std::size_t tool, const Vec3& p_W) {
   return carried + residual_shift(tool, vertex);
 }
 
-/// How far the other tools push a vertex, but for what they do by the published modes, m.
+/// Returns how far the other tools push a vertex, but for what they do by the published modes, m.
 Vec3 Simulation::residual_shift(std::size_t tool, int vertex) {
   Vec3 shift = Vec3::Zero();
   for (std::size_t other = 0; other < tools_.size(); ++other) {

@@ -37,7 +37,7 @@ void Simulation::settle() {
   if (tools_[0].placed()) tools_[0].settle(tissue_.touched_by(0));
 }
 
-/// What tools hold in their jaws, all of it at once, comes to rest with what they touch, in turns.
+/// Brings what tools hold in their jaws, all of it at once, to rest with what they touch, in turns.
 void Simulation::settle_grasps(bool converged) {
   const auto holds = [](const ToolContact& tool) { return tool.placed() && tool.holds(); };
   bool moved = std::ranges::any_of(tools_, holds);
@@ -78,7 +78,7 @@ void Simulation::restore_touching() {
   for (std::size_t i = 0; i < tools_.size(); ++i) tissue_.touched_by(i).mark_solved();  // with all loads back
 }
 
-/// Whether contact is to be looked for everywhere: what is longer than a ball may touch anywhere along
+/// True if contact is to be looked for everywhere: what is longer than a ball may touch anywhere along
 /// itself, what appears is put outside first, wherever that is, and tissue that is let go springs back, as
 /// far as it was pulled.
 bool Simulation::searches_everywhere(std::size_t tool, const ToolInput& input) const noexcept {

@@ -101,7 +101,7 @@ std::vector<ToolForce> approach(const Scene& scene, Simulation& simulation, Site
   return {answers.begin(), answers.end()};
 }
 
-/// Where the tool presses; nothing: it reaches nothing.
+/// Returns where the tool presses; nothing: it reaches nothing.
 std::optional<Press> press_of(const Scene& scene, Simulation& simulation, std::size_t tool, Sites others) {
   const std::vector<Vec3> normals = vertex_normals(simulation);
   std::vector<Press> unsettled;

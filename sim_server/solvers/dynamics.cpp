@@ -21,7 +21,7 @@ constexpr double kNegligibleDisplacement = 1e-9, kRemote = 1e-4, kOffset = 1e-7;
 // accepted without a line search.
 constexpr double kAdrift = 0.1, kNoSearch = 0.1;
 
-/// Of a linear law one factor serves for ever, unless the body is cut.
+/// True if one factor serves for ever: of a linear law, unless the body is cut.
 bool one_factor_serves(const Solid& solid, const DynamicsSettings& settings) {
   return solid.material().law == ElasticLaw::kLinear && !settings.cut;
 }
@@ -69,7 +69,7 @@ void Dynamics::part(std::span<const Split> splits, std::span<const NodeMass> mas
   continue_with(masses);
 }
 
-/// Between two steps, with a body that has been cut.
+/// Continues between two steps with a body that has been cut.
 void Dynamics::continue_with(std::span<const NodeMass> masses) {
   for (const auto& [node, mass] : masses) mass > 0 ? motion_.set_mass(node, mass) : motion_.stop(node);
   motion_.forget_forces();
@@ -81,7 +81,7 @@ Residual Dynamics::evaluate(std::span<const Vec3> external) {
   return residual;
 }
 
-/// By `d` (m) from the trial point without a line search.
+/// Moves by `d` (m) from the trial point without a line search.
 void Dynamics::move_without_search(const Eigen::VectorXd& d) {
   unsearched_from_.assign(motion_.position().begin(), motion_.position().end());
   unsearched_ = d;
@@ -139,7 +139,7 @@ int Dynamics::solve(std::span<const Vec3> external, int max_iterations, double t
   return iterations;
 }
 
-/// Where A could not be factored, a little along the residual.
+/// Returns the Newton direction, or, where A could not be factored, a little of the residual.
 Eigen::VectorXd Dynamics::search_direction(const Residual& residual, std::span<const Vec3> external) {
   if (factor_.learns())
     factor_.add_point(motion_.unknowns(), -residual.force + motion_.by_unknowns(external));
@@ -163,7 +163,7 @@ Eigen::VectorXd Dynamics::inexact_direction(const Residual& residual, std::span<
   return d;
 }
 
-/// By `d` (m) from the trial point with this residual, as far as the line search lets it.
+/// Moves by `d` (m) from the trial point with this residual, as far as the line search lets it.
 void Dynamics::search_along(const Eigen::VectorXd& d, const Residual& residual,
                             std::span<const Vec3> external) {
   if (is_linear()) return motion_.move_by(d);

@@ -36,7 +36,8 @@ class Newton {
     negligible_force_ = kRestsWithin * diagonal_of(solid.rest()) * mean_diagonal_;
   }
 
-  /// From `x`, where a share `from` of everything acts, to a share `to`. False where that fails.
+  /// Advances from `x`, where a fraction `from` of everything acts, to a fraction `to`. False where that
+  /// fails.
   bool advance(std::vector<Vec3>& x, double from, double to) {
     fraction_ = to;
     if (load_.start.empty() && !move_supports(x, to - from)) return false;

@@ -21,8 +21,8 @@ StiffnessMatrix at_rest(const Solid& solid, const FreeDofs& dofs, bool flies) {
   return matrix;
 }
 
-/// What the factor answers is corrected by later iterations, but of the linear law, which makes none unless
-/// the body may be cut.
+/// Returns single precision where later iterations correct what the factor answers: not of the linear law,
+/// which makes none unless the body may be cut.
 SparseCholesky::Precision precision_for(const Material& material, bool cut) {
   using Precision = SparseCholesky::Precision;
   return material.law == ElasticLaw::kLinear && !cut ? Precision::kDouble : Precision::kSingle;
@@ -136,7 +136,8 @@ void NewtonMatrix::add_to_border(std::span<const int> copy_of, int i, int j, con
   }
 }
 
-/// Where the factor is of a body of another shape, the Schur complement need not be definite: it is made so.
+/// Uses the border of a factor. Where that is of a body of another shape, the Schur complement need not be
+/// definite: it is made so.
 void NewtonMatrix::use_border() {
   response_ = factor_.solve(border_);
   response_ += factor_.solve(border_ - matrix_.times(response_));

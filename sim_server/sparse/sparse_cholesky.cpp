@@ -25,7 +25,7 @@ struct SparseCholesky::Factor {
     const std::size_t number = precision == Precision::kSingle ? sizeof(float) : sizeof(double);
     return pattern->values() * number + pattern->bytes();
   }
-  /// What is taken besides while it is made.
+  /// Returns what is taken besides while it is made.
   std::size_t work_bytes(const SparseMatrix&) const {
     return (pattern->subtrees.size() + 1) * pattern->order.size() * sizeof(int);
   }
@@ -40,9 +40,9 @@ struct SparseCholesky::Factor {
     return rough->factor(lower);
   }
 
-  /// What double precision would take more than single.
+  /// Returns what double precision would take more than single.
   std::size_t more_bytes() const { return pattern->values() * (sizeof(double) - sizeof(float)); }
-  /// From here on in this precision.
+  /// Drops the factor and continues in this precision.
   void take(Precision other) {
     rough.reset();
     fine.reset();
@@ -69,7 +69,7 @@ namespace {
 constexpr double kSingular = 1e13;  // condition beyond which rounding has eaten the answer
 constexpr double kRough = 1e-3;     // of a load: so much unbalanced is more than single precision may leave
 
-/// Whether it can go on in double precision; warns where that is for want of memory.
+/// True if it can go on in double precision; warns where that is for want of memory.
 template <class Factor>
 bool can_be_finer(const Factor& factor) {
   if (factor.precision == SparseCholesky::Precision::kDouble) return false;
@@ -83,7 +83,7 @@ bool can_be_finer(const Factor& factor) {
   return false;
 }
 
-/// Between the analysis of the pattern and the numbers.
+/// Checks the memory between the analysis of the pattern and the numbers.
 template <class Factor>
 void require_room(const Factor& factor, const SparseMatrix& lower, double free, const std::string& where) {
   const std::string what = fmt::format("the Cholesky factor of {} unknowns", lower.rows());
@@ -97,7 +97,7 @@ Eigen::MatrixXd alternating(Eigen::Index n) {
   return Eigen::VectorXd::NullaryExpr(n, [](Eigen::Index i) { return i % 2 == 0 ? 1.0 : -0.7; });
 }
 
-/// Of a load, the share that an answer leaves.
+/// Returns the fraction of a load that an answer leaves.
 double imbalance(const SparseMatrix& lower, const Eigen::MatrixXd& answer, const Eigen::MatrixXd& load) {
   return (load - lower.selfadjointView<Eigen::Lower>() * answer).norm() / load.norm();
 }

@@ -13,7 +13,7 @@ constexpr int kBand = 256;   // rows of a supernode that one task works on
 constexpr int kPanel = 256;  // columns of a large one that are eliminated at once
 constexpr int kFew = 3;  // right-hand sides that go one by one: to multiply more at once BLAS packs the block
 
-/// Whether ascending numbers leave none out.
+/// True if ascending numbers leave none out.
 bool without_gap(std::span<const int> numbers) {
   return numbers.empty() || numbers.back() - numbers.front() == static_cast<int>(numbers.size()) - 1;
 }

@@ -14,7 +14,7 @@ constexpr std::size_t kGroups = 8;    // of rows between two reports
 
 }  // namespace
 
-/// Which supernodes take part where a few rows and columns of the inverse are wanted.
+/// The supernodes that take part where a few rows and columns of the inverse are wanted.
 class InversePlan {
  public:
   InversePlan(const SupernodalPattern& pattern, std::span<const int> unknowns)
@@ -34,8 +34,9 @@ class InversePlan {
   std::span<const Wanted> wanted() const { return wanted_; }
   int supernode(const Wanted& one) const { return node_[one.place]; }
 
-  /// Of each supernode, whether it is at or above that of one of `some` in the tree of elimination: where a
-  /// load on them goes in forward elimination, and what their rows are found from in the backward one.
+  /// Returns, of each supernode, whether it is at or above that of one of `some` in the tree of elimination:
+  /// where a load on them goes in forward elimination, and what their rows are found from in the backward
+  /// one.
   std::vector<char> above(std::span<const Wanted> some) const {
     std::vector<char> marks(static_cast<std::size_t>(pattern_.supernodes()), 0);
     for (const Wanted& one : some) marks[supernode(one)] = 1;
@@ -90,7 +91,7 @@ class SupernodalFactor<Scalar>::InverseColumns {
     }
   }
 
-  /// What belongs to one unknown, (loads).
+  /// Returns what belongs to one unknown, (loads).
   auto of(const InversePlan::Wanted& unknown) const { return x_.col(unknown.place - base_); }
 
  private:

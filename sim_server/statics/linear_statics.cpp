@@ -28,8 +28,8 @@ std::span<const T> values(const T* first, Eigen::Index count) {
   return {first, static_cast<std::size_t>(count)};
 }
 
-/// Where a set-up finds what was computed before, and keeps what it computes: what was condensed, where there
-/// is that, else the cache, else nowhere.
+/// The store in which a set-up finds what was computed before, and keeps what it computes: what was
+/// condensed, where there is that, else the cache, else nowhere.
 class StoredMatrices {
  public:
   explicit StoredMatrices(const ModelInputs& inputs) : inputs_(inputs) {}
@@ -53,14 +53,14 @@ class StoredMatrices {
   const ModelInputs& inputs_;
 };
 
-/// So many digits of a sum are the same in every build.
+/// Returns the digits of a sum that are the same in every build.
 std::string in_any_build(double sum) {
   return fmt::format("{:.7e}", sum);
 }
 
-/// Of K and, for modes, of the masses: to the last bit, or to what every build agrees on, which is the
-/// pattern of K, and sum_ij |K_ij| v_i v_j and sum_ij K_ij w_i w_j for two vectors v, w = v - 1 without an
-/// order. The second tells a body from its mirror image, and one that was turned.
+/// Adds K and, for modes, the masses: to the last bit, or to what every build agrees on, which is the pattern
+/// of K, and sum_ij |K_ij| v_i v_j and sum_ij K_ij w_i w_j for two vectors v, w = v - 1 without an order. The
+/// second tells a body from its mirror image, and one that was turned.
 void add(const SparseMatrix& k, Fingerprint& fingerprint, bool of_any_build) {
   fingerprint.add(values(k.outerIndexPtr(), k.outerSize() + 1));
   fingerprint.add(values(k.innerIndexPtr(), k.nonZeros()));
@@ -80,7 +80,7 @@ void add(const SparseMatrix& k, Fingerprint& fingerprint, bool of_any_build) {
   }
 }
 
-/// Of all that rows and columns of K^-1 follow from, and how they are kept.
+/// Returns the key of all that rows and columns of K^-1 follow from, and how they are stored.
 Digest key_of_compliance(const SparseMatrix& k, std::span<const int> rows,
                          const SurfaceCompliance& compliance, const StoredMatrices& stored) {
   constexpr int kLayout = 1;  // of tiles in a file
@@ -95,7 +95,7 @@ Digest key_of_compliance(const SparseMatrix& k, std::span<const int> rows,
   return fingerprint.digest();
 }
 
-/// Of all that modes of vibration follow from.
+/// Returns the key of all that modes of vibration follow from.
 Digest key_of_modes(const SparseMatrix& k, const Eigen::VectorXd& masses, int count,
                     const StoredMatrices& stored) {
   Fingerprint fingerprint = stored.fingerprint();
@@ -143,7 +143,7 @@ const FactoredMatrix& LinearStatics::factor(FactorUse use) const {
   return *factor_;
 }
 
-/// Of K, three for each of these surface vertices, which are free.
+/// Returns the rows of K of these surface vertices, which are free, three each.
 std::vector<int> LinearStatics::rows_of(std::span<const int> vertices) const {
   std::vector<int> rows;
   for (const int vertex : vertices) {

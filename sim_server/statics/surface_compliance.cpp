@@ -30,7 +30,7 @@ void symmetrise(Eigen::Ref<Eigen::MatrixXd> m) {
   });
 }
 
-/// Which can be reached, and are free.
+/// Returns the vertices that can be reached and are free.
 std::vector<int> free_vertices(const ModelInputs& inputs) {
   std::vector<int> free;
   for (const int vertex : inputs.reachable) {
@@ -209,7 +209,7 @@ void SurfaceCompliance::add(const Eigen::MatrixXd& shapes, const Eigen::VectorXd
   symmetrise(compliance_);
 }
 
-/// How one vertex moves per force on another, m/N.
+/// Returns how one vertex moves per force on another, m/N.
 Mat3 SurfaceCompliance::block(int vertex, int other) const noexcept {
   const int row = row_[vertex], column = row_[other];
   if (row < 0 || column < 0) return (vertex == other ? held_compliance_ : 0.0) * Mat3::Identity();

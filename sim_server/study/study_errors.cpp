@@ -30,7 +30,7 @@ struct RelativeError {
   double percent() const { return squares > 0 ? 100 * sum / count / rms() : 0; }
 };
 
-/// Between the ends of steps.
+/// Returns the force between the ends of steps.
 Vec3 force_at(const Trace& reference, double t) {
   const double at = std::clamp(t / reference.dt - 1, 0.0, static_cast<double>(reference.forces.size() - 1));
   const auto before = static_cast<std::size_t>(at);

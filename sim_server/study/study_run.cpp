@@ -68,7 +68,7 @@ std::vector<Vec3> compared_sites(const StudyCase& one, const Box& box) {
 
 namespace {
 
-/// Of the end, where the tool has left and much may be as at rest, and of all forces before.
+/// Hashes the end, where the tool has left and much may be as at rest, and all forces before.
 std::uint64_t hash_of(std::span<const Vec3> forces, std::uint64_t end) {
   Fnv1a hash;
   for (const Vec3& force : forces) hash.add(force);

@@ -21,7 +21,7 @@ bool by_iterations(const StudyRow& row) {
   return model_of(row.one.scene.deformation).takes<ImplicitSettings>();
 }
 
-/// What is the same on every run.
+/// Returns what is the same on every run.
 Json facts_of(const StudyRow& row) {
   const Scene& scene = row.one.scene;
   Json facts{{"scene", row.scene},
@@ -50,7 +50,7 @@ Json facts_of(const StudyRow& row) {
   return facts;
 }
 
-/// What depends on the machine.
+/// Returns what depends on the machine.
 Json times_of(const StudyRow& row) {
   return {{"step_ms_p50", row.touched ? Json(row.step_ms_p50) : Json()},
           {"step_ms_p99", row.touched ? Json(row.step_ms_p99) : Json()},
@@ -83,7 +83,7 @@ Json steps_of(const Trace& truth) {
   return lines;
 }
 
-/// What the case leaves out of the scene, as its model cannot.
+/// Returns what the case leaves out of the scene, as its model cannot.
 std::string without(const Scene& scene, const Scene& requested) {
   std::string text;
   if (scene.loads.empty() && !requested.loads.empty()) text += "# and without: [[load]]\n";
@@ -93,7 +93,7 @@ std::string without(const Scene& scene, const Scene& requested) {
   return text;
 }
 
-/// To be pasted into the scene that was `requested` about.
+/// Returns settings to be pasted into the scene that was `requested` about.
 std::string settings_of(const StudyRow& row, const Scene& requested) {
   const Scene& scene = row.one.scene;
   std::string text = fmt::format(

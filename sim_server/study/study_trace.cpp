@@ -98,7 +98,7 @@ std::optional<Trace> read_trace(const std::filesystem::path& path) {
 
 namespace {
 
-/// In the child: does `work`, and says what went wrong.
+/// Does `work` in the child, and reports what went wrong.
 [[noreturn]] void separate_work(int out, const std::function<void()>& work) {
   sigset_t all;
   sigfillset(&all);
@@ -116,7 +116,7 @@ namespace {
   _exit(code);
 }
 
-/// What the child says until it ends; nothing where Ctrl-C came first.
+/// Returns what the child says until it ends; nothing where Ctrl-C came first.
 std::optional<std::string> hear(int in) {
   constexpr int kPollPeriod = 100;  // ms
   std::string text(4096, '\0');

@@ -38,7 +38,7 @@ std::optional<PageLink::Kind> PageLink::next(const Showing& showing, Time now, B
   return {};
 }
 
-/// What comes before anything else.
+/// Returns what comes before anything else.
 std::optional<PageLink::Kind> PageLink::begin(const Showing& showing, Bytes& out) {
   if (!knows_scene_) {
     knows_scene_ = true;
@@ -76,7 +76,7 @@ bool PageLink::next_surface(const Showing& showing, Time now, Bytes& out) {
   return true;
 }
 
-/// Whether the next picture may be shown, so long after the last.
+/// True if the next picture may be shown, so long after the last.
 bool PageLink::may_follow(Time after) const noexcept {
   return after >= kSurfaceEach && in_transit_.size() < kMaxInTransit;
 }

@@ -11,7 +11,7 @@
 namespace palpate::sim {
 namespace {
 
-/// As a 32-bit float says it: no page needs more digits.
+/// Rounds as a 32-bit float does: no page needs more digits.
 double brief(double value) {
   return std::isfinite(value) ? std::strtod(fmt::format("{:.6g}", value).c_str(), nullptr) : 0;
 }

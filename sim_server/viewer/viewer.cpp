@@ -38,7 +38,7 @@ std::string security_policy(const std::string& host) {
          host + "; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 }
 
-/// What is left to be sent of a file.
+/// The remainder of a file that is being sent.
 struct Fetch {
   const char* next;
   std::size_t remaining;
@@ -285,7 +285,7 @@ void Viewer::Server::open(lws* wsi, Page*& page) {
   feed.pages = static_cast<int>(pages.size());
 }
 
-/// When the connection takes that, or after a while without.
+/// Ends a page when the connection takes that, or after a while without.
 void Viewer::Server::end(Page& page, lws_close_status why, std::string text) {
   if (page.end) return;
   page.end = {why, std::move(text)};
@@ -308,7 +308,7 @@ void Viewer::Server::on_message(Page& page, std::string_view part) {
   lws_callback_on_writable(page.wsi);
 }
 
-/// Whether it may be said now; hello comes first, and once.
+/// True if it may be said now; hello comes first, and once.
 bool Viewer::Server::obey(Page& page, const PageMessage& message) {
   if (const auto* hello = std::get_if<PageHello>(&message)) {
     if (page.link.greeted()) return false;
