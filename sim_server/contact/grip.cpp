@@ -113,7 +113,7 @@ Mat3 Grip::turn_of_motion(const ToolPose& pose) const {
   const Vec3 a = axis(pose), a0 = axis(*closed_at_), roll = -a0.cross(a) / (1 + a0.dot(a));
   Mat3 turn;
   for (int k = 0; k < 3; ++k) turn.col(k) = -(a.cross(Vec3::Unit(k)) + roll[k] * a);
-  return turn / (*pivot_ - pose.p_W).norm();
+  return turn / std::max((*pivot_ - pose.p_W).norm(), reach_);  // bounded where the jaws are in the trocar
 }
 
 /// Returns how far a held vertex goes per motion of the tool, that turns so.

@@ -177,4 +177,7 @@ TEST_CASE("grip: jaws on a trocar turn what they hold with the shaft, and the ti
       CHECK((found.tangent.col(k) - slope).norm() < 0.02 * found.tangent.norm());
     }
   }
+  const ToolAnswer in_the_wall = step_to(pivot);  // no tool is there, but a client may say so
+  CHECK(in_the_wall.force.allFinite());
+  CHECK(in_the_wall.tangent.allFinite());
 }
