@@ -19,7 +19,7 @@ constexpr double kOpposite = 0.02;  // of the larger force: how far both may be 
 constexpr double kNoPull = 1e-6;    // of the larger force: a pull that is rounding
 constexpr double kClear = 0.002;    // m, between tool and tissue at first
 
-Verdict rigid_is_left_out() {
+Verdict rigid_is_omitted() {
   return {"not_applicable", "an organ that does not deform has no place between two tools", {}, {}, ""};
 }
 
@@ -104,19 +104,19 @@ Verdict judge_pinch(const Watched& watched) {
 }
 
 Verdict pinched(const Setting& setting, const Column& column) {
-  if (!column.row->deforms()) return rigid_is_left_out();
+  if (!column.row->deforms()) return rigid_is_omitted();
   return judge_pinch(watch(Pinch{}.world(setting), column));
 }
 
 Verdict pinched_apart(const Setting& setting, const Column& column) {
-  if (!column.row->deforms()) return rigid_is_left_out();
+  if (!column.row->deforms()) return rigid_is_omitted();
   return judge_pinch(watch(Pinch{.fraction = 0.3, .apart = 0.008}.world(setting), column));
 }
 
 /// Jaws that hold a vertex of the top and its four neighbours where they are, and a ball that presses beside
 /// them: as if the tissue were held there.
 Verdict grasp_and_press(const Setting& setting, const Column& column) {
-  if (!column.row->deforms()) return rigid_is_left_out();
+  if (!column.row->deforms()) return rigid_is_omitted();
   const Vec3 place(-0.005, 0, 0), beside(0.009, 0, 0.001);
   const Direction down{
       {beside + Vec3(0, kToolRadius + kClear, 0), beside + Vec3(0, kToolRadius - setting.depth, 0)},
@@ -139,7 +139,7 @@ Verdict grasp_and_press(const Setting& setting, const Column& column) {
 
 /// Two pairs of jaws 6 mm apart lift the same tissue by 5 mm: the sum of their forces.
 Verdict handed_over(const Setting& setting, const Column& column) {
-  if (!column.row->deforms()) return rigid_is_left_out();
+  if (!column.row->deforms()) return rigid_is_omitted();
   constexpr double kJaws = 0.006, kReach = 1.25 * kJaws, kApart = 0.006;
   const Vec3 places[] = {Vec3(-kApart / 2, kJaws, 0), Vec3(kApart / 2, kJaws, 0)}, up(0, 0.005, 0);
   World world = block_of(setting);
