@@ -110,21 +110,32 @@ double Dynamics::newton_iteration(std::span<const Vec3> external, double toleran
   const double previous = relative_residual_;
   if (at_predictor_) limit_predictor(external);
   const bool factored = factor_.match_step_length(motion_);
-  const Residual residual = evaluate_move(external);
-  if (!std::isfinite(residual.relative)) {
-    return_();
-    return 0;
-  }
-  if (residual.relative <= tolerance) return residual.relative;
-  if (!factor_.prepare(motion_, residual, previous, factored)) return 0;
-  const Eigen::VectorXd d = search_direction(residual, external);
+  using Direction = std::optional<Eigen::VectorXd>;
+  const NewtonIteration iteration =
+      iterate_newton({.residual = [&] { return evaluate_move(external); },
+                      .direction =
+                          [&](const Residual& residual) {
+                            const bool goes_on = factor_.prepare(motion_, residual, previous, factored);
+                            return goes_on ? Direction(search_direction(residual, external)) : Direction();
+                          },
+                      .accept = [&](const Eigen::VectorXd& d,
+                                    const Residual& residual) { return accept(d, residual, external); }},
+                     tolerance);
+  using End = NewtonIteration::End;
+  if (iteration.end == End::kNotFinite) return_();
+  const bool is_rounding = iteration.end == End::kNoDirection || iteration.end == End::kNotFinite;
+  return is_rounding ? 0 : iteration.relative;
+}
+
+/// Moves along a search direction: searched, where the body is damped or far from balance.
+bool Dynamics::accept(const Eigen::VectorXd& d, const Residual& residual, std::span<const Vec3> external) {
   if (damped_ || residual.relative > kNoSearch) {
     search_along(d, residual, external);
   } else {
     move_without_search(d);
     trial_residual_ = residual.relative;
   }
-  return residual.relative;
+  return true;
 }
 
 /// A trial point beyond all numbers.

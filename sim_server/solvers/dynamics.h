@@ -121,6 +121,7 @@ class Dynamics {
   void return_();
   void continue_with(std::span<const NodeMass> masses);
   double newton_iteration(std::span<const Vec3> external, double tolerance);
+  bool accept(const Eigen::VectorXd& d, const Residual& residual, std::span<const Vec3> external);
   Eigen::VectorXd search_direction(const Residual& residual, std::span<const Vec3> external);
   Eigen::VectorXd inexact_direction(const Residual& residual, std::span<const Vec3> external);
   void search_along(const Eigen::VectorXd& d, const Residual& residual, std::span<const Vec3> external);

@@ -2,54 +2,52 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "common/error.h"
 #include "sim_server/mesh/bounding_box.h"
 #include "sim_server/solvers/newton.h"
+#include "sim_server/solvers/newton_matrix.h"
 
 namespace palpate::sim {
 namespace {
 
-constexpr double kArmijo = 1e-4;  // sufficient decrease in a line search
 // Share of what the supports move by which they are nudged, to find how the residual changes.
 constexpr double kSupportOffset = 1e-7;
 // Share of the size of the body: a force that moves a node by less counts as none.
 constexpr double kRestsWithin = 1e-7;
-constexpr double kFirstShift = 0.05, kLastShift = 1e3;  // of the stiffness at rest
 
-class Newton {
+/// A body under a fraction of its static load, at a trial point: what Newton's method solves.
+class LoadedBody {
  public:
-  Newton(const Solid& solid, const StaticLoad& load, const std::string& where,
-         const EquilibriumSettings& settings)
+  LoadedBody(const Solid& solid, const StaticLoad& load, const std::string& where)
       : solid_(solid),
         scratch_(solid),
         load_(load),
-        settings_(settings),
         dofs_(load.held),
-        stiffness_(solid.stiffness_matrix(dofs_)),
+        masses_(solid.masses()),
+        matrix_(solid, dofs_, {}, where, SparseCholesky::Precision::kDouble),
         internal_(static_cast<std::size_t>(solid.nodes())),
-        external_(internal_.size()) {
-    solid.add_stiffness(solid.rest(), stiffness_, {}, scratch_);
-    mean_diagonal_ = stiffness_.lower().diagonal().mean();
-    stiffness_.close_empty(mean_diagonal_);
-    factor_.emplace(stiffness_.lower(), where, SparseCholesky::Precision::kSingle);
-    negligible_force_ = kRestsWithin * diagonal_of(solid.rest()) * mean_diagonal_;
-  }
+        external_(internal_.size()),
+        negligible_force_(kRestsWithin * diagonal_of(solid.rest()) * matrix_.mean_diagonal()) {}
 
   /// Advances from `x`, where a fraction `from` of everything acts, to a fraction `to`. False where that
   /// fails.
-  bool advance(std::vector<Vec3>& x, double from, double to) {
+  bool advance(std::vector<Vec3>& x, double from, double to, const EquilibriumSettings& settings) {
+    x_ = &x;
     fraction_ = to;
-    if (load_.start.empty() && !move_supports(x, to - from)) return false;
+    if (load_.start.empty() && !move_supports(to - from)) return false;
     double before = std::numeric_limits<double>::infinity();
-    for (int i = 0; i <= settings_.max_newton; ++i) {
-      const Eigen::VectorXd residual = residual_at(x);
-      if (!std::isfinite(relative_residual_)) return false;
-      const bool stuck = relative_residual_ >= before && relative_residual_ <= settings_.rounding;
-      if (relative_residual_ <= settings_.tolerance || stuck) return true;
-      before = relative_residual_;
+    for (int i = 0; i <= settings.max_newton; ++i) {
+      using End = NewtonIteration::End;
+      const NewtonIteration iteration = iterate_newton(problem(), settings.tolerance);
+      relative_residual_ = iteration.relative;
+      const bool is_rounding = iteration.relative <= settings.rounding;
+      if (iteration.end == End::kBalanced) return is_stable();
+      if (iteration.end != End::kMoved || (is_rounding && iteration.relative >= before))
+        return is_rounding && is_stable();
+      before = iteration.relative;
       ++iterations_;
-      if (!step(x, residual)) return relative_residual_ <= settings_.rounding;
     }
     return false;
   }
@@ -60,105 +58,91 @@ class Newton {
  private:
   bool is_linear() const { return solid_.material().law == ElasticLaw::kLinear; }
 
+  /// An equilibrium with an indefinite stiffness is one that the body leaves as it is touched.
+  bool is_stable() const { return !matrix_.is_shifted(); }
+
+  NewtonProblem problem() {
+    return {.residual = [this] { return residual_here(); },
+            .direction = [this](const Residual& residual) { return direction(residual.force); },
+            .accept = [this](const Eigen::VectorXd& d,
+                             const Residual& residual) { return search_along(d, residual); }};
+  }
+
   /// f_ext - f_int over the free displacements, N.
-  Eigen::VectorXd residual_at(const std::vector<Vec3>& x) {
-    solid_.forces(x, internal_, {}, scratch_);
+  Residual residual_here() {
+    solid_.forces(*x_, internal_, {}, scratch_);
     std::ranges::fill(external_, Vec3::Zero());
-    if (load_.forces) load_.forces(x, external_);
-    Eigen::VectorXd residual(dofs_.count);
+    if (load_.forces) load_.forces(*x_, external_);
+    Residual residual{.force = Eigen::VectorXd(dofs_.count)};
     double squares = negligible_force_ * negligible_force_;
     for (std::size_t i = 0; i < internal_.size(); ++i) {
       squares += internal_[i].squaredNorm() + fraction_ * fraction_ * external_[i].squaredNorm();
-      if (dofs_.first[i] >= 0) residual.segment<3>(dofs_.first[i]) = fraction_ * external_[i] - internal_[i];
+      if (dofs_.first[i] < 0) continue;
+      residual.force.segment<3>(dofs_.first[i]) = fraction_ * external_[i] - internal_[i];
     }
-    dofs_.hold(residual);
-    relative_residual_ = residual.norm() / std::sqrt(squares);
+    dofs_.hold(residual.force);
+    residual.force_scale = std::sqrt(squares);
+    residual.relative = residual.force.norm() / residual.force_scale;
     return residual;
   }
 
-  bool factor_at(const std::vector<Vec3>& x) {
-    if (is_linear()) return true;  // as at rest, everywhere
-    stiffness_.set_zero();
-    solid_.add_stiffness(x, stiffness_, {}, scratch_);
-    stiffness_.close_empty(mean_diagonal_);
-    if (factor_->refactor(stiffness_.lower())) return true;
-    StiffnessMatrix at_rest = solid_.stiffness_matrix(dofs_);
-    solid_.add_stiffness(solid_.rest(), at_rest, {}, scratch_);
-    at_rest.close_empty(mean_diagonal_);
-    double added = 0;
-    for (double shift = kFirstShift; shift < kLastShift; shift *= 4) {
-      stiffness_.lower() += (shift - added) * at_rest.lower();
-      added = shift;
-      if (factor_->refactor(stiffness_.lower())) return true;
-    }
-    return false;
+  std::optional<Eigen::VectorXd> direction(const Eigen::VectorXd& force) {
+    if (!is_linear()) matrix_.build(solid_, *x_, masses_, {}, 0, scratch_);
+    if (!matrix_.is_definite()) return {};
+    return matrix_.solve(force).col(0);
   }
 
-  double potential(const std::vector<Vec3>& x) {
-    double work = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) work += fraction_ * external_[i].dot(x[i] - solid_.rest()[i]);
-    return solid_.energy(x, scratch_) - work;
+  bool search_along(const Eigen::VectorXd& d, const Residual& residual) {
+    const std::vector<Vec3> from = *x_;
+    move_along(from, d);
+    if (is_linear()) return true;
+    const TrialStep trial = line_search(d, residual.force, [&](double s) {
+      move_along(from, s * d);
+      return residual_here();
+    });
+    if (trial.length == 0) *x_ = from;
+    return trial.length > 0;
   }
 
-  bool step(std::vector<Vec3>& x, const Eigen::VectorXd& residual) {
-    if (!factor_at(x)) return false;
-    const Eigen::VectorXd d = factor_->solve(residual).col(0);
-    const std::vector<Vec3> from = x;
-    if (is_linear()) {
-      move_along(from, 1, d, x);
-      return true;
-    }
-    const double before = potential(x), slope = residual.dot(d), norm = residual.norm();
-    const std::vector<Vec3> external =
-        external_;  // a pressure changes as the body does: the energy is that of this one
-    for (double length = 1; length > kShortestTrialStep; length /= 2) {
-      move_along(from, length, d, x);
-      external_ = external;
-      if (potential(x) <= before - kArmijo * length * slope || residual_at(x).norm() < norm) return true;
-    }
-    x = from;
-    return false;
-  }
-
-  void move_along(const std::vector<Vec3>& from, double length, const Eigen::VectorXd& d,
-                  std::vector<Vec3>& x) const {
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      if (dofs_.first[i] >= 0) x[i] = from[i] + length * d.segment<3>(dofs_.first[i]);
+  void move_along(const std::vector<Vec3>& from, const Eigen::VectorXd& d) {
+    for (std::size_t i = 0; i < from.size(); ++i) {
+      if (dofs_.first[i] >= 0) (*x_)[i] = from[i] + d.segment<3>(dofs_.first[i]);
     }
   }
 
   /// The supports move on by a share of all that they do, and the body with them as its tangent stiffness
   /// says; false: it says nothing, and nothing has moved.
-  bool move_supports(std::vector<Vec3>& x, double fraction) {
+  bool move_supports(double fraction) {
     if (load_.moved.empty()) return true;
+    const std::vector<Vec3> from = *x_;
     const auto moved_by = [&](double part) {
-      std::vector<Vec3> moved = x;
-      for (std::size_t i = 0; i < x.size(); ++i) {
+      std::vector<Vec3> moved = from;
+      for (std::size_t i = 0; i < moved.size(); ++i) {
         for (int axis = 0; axis < 3; ++axis)
           moved[i][axis] += (load_.held[i] >> axis & 1) != 0 ? part * load_.moved[i][axis] : 0.0;
       }
       return moved;
     };
-    const std::vector<Vec3> ahead = moved_by(kSupportOffset * fraction);
-    const Eigen::VectorXd before = residual_at(x);
-    const Eigen::VectorXd pull = (residual_at(ahead) - before) / kSupportOffset;
-    if (!factor_at(x)) return false;
-    const Eigen::VectorXd d = factor_->solve(pull).col(0);
-    x = moved_by(fraction);
-    move_along(x, 1, d, x);
+    const Eigen::VectorXd before = residual_here().force;
+    *x_ = moved_by(kSupportOffset * fraction);
+    const Eigen::VectorXd pull = (residual_here().force - before) / kSupportOffset;
+    *x_ = from;
+    const std::optional<Eigen::VectorXd> d = direction(pull);
+    if (!d) return false;
+    *x_ = moved_by(fraction);
+    move_along(std::vector<Vec3>(*x_), *d);
     return true;
   }
 
   const Solid& solid_;
   Solid::Scratch scratch_;
   const StaticLoad& load_;
-  const EquilibriumSettings& settings_;
   FreeDofs dofs_;
-  StiffnessMatrix stiffness_;
-  std::optional<SparseCholesky> factor_;
+  std::vector<double> masses_;
+  NewtonMatrix matrix_;
   std::vector<Vec3> internal_, external_;
-  double mean_diagonal_ = 0;     // of the stiffness at rest, N/m
-  double negligible_force_ = 0;  // N
+  double negligible_force_;         // N
+  std::vector<Vec3>* x_ = nullptr;  // the trial point
   double fraction_ = 0, relative_residual_ = 0;
   int iterations_ = 0;
 };
@@ -168,13 +152,13 @@ class Newton {
 Equilibrium find_equilibrium(const Solid& solid, const StaticLoad& load, const std::string& where,
                              const std::function<void(double)>& progress,
                              const EquilibriumSettings& settings) {
-  Newton newton(solid, load, where, settings);
+  LoadedBody body(solid, load, where);
   Equilibrium found{.x = load.start.empty() ? solid.rest() : load.start};
   const double smallest = std::pow(0.5, settings.max_halvings);
   double done = 0, step = 1;
   while (done < 1) {
     std::vector<Vec3> x = found.x;
-    if (newton.advance(x, done, std::min(1.0, done + step))) {
+    if (body.advance(x, done, std::min(1.0, done + step), settings)) {
       done = std::min(1.0, done + step);
       found.x = std::move(x);
       ++found.increments;
@@ -182,13 +166,14 @@ Equilibrium find_equilibrium(const Solid& solid, const StaticLoad& load, const s
       if (progress) progress(done);
     } else if ((step /= 2) < smallest) {
       fail(
-          "{}: no equilibrium found beyond {:.3g} % of the load: a smaller load, a stiffer material, finer "
+          "{}: no stable equilibrium found beyond {:.3g} % of the load: a smaller load, a stiffer material, "
+          "finer "
           "tetrahedra or law neo_hookean would help",
           where, 100 * done);
     }
   }
-  found.iterations = newton.iterations();
-  found.residual = newton.residual();
+  found.iterations = body.iterations();
+  found.residual = body.residual();
   return found;
 }
 

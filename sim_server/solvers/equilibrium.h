@@ -33,10 +33,10 @@ struct Equilibrium {
   double residual = 0;                 ///< relative: its norm, as a share of all forces that act
 };
 
-/// The static equilibrium f_int(x) = f_ext(x) by Newton's method with line search on the energy, in one
-/// increment of the load, or as many as it takes. Where the tangent stiffness is not positive definite, as
-/// much of the stiffness at rest is added as makes it so. Throws `Error`, beginning with `where`, when the
-/// fixed nodes do not hold the body or no equilibrium is found. Reports its increments.
+/// The static equilibrium f_int(x) = f_ext(x) by Newton's method with a line search, in one increment of the
+/// load, or as many as it takes. Where the tangent stiffness is not positive definite, as much inertia is
+/// added as makes it so (`NewtonMatrix`). Throws `Error`, beginning with `where`, when the
+/// fixed nodes do not hold the body or no stable equilibrium is found. Reports its increments.
 Equilibrium find_equilibrium(const Solid& solid, const StaticLoad& load, const std::string& where,
                              const std::function<void(double fraction)>& progress = {},
                              const EquilibriumSettings& settings = {});

@@ -1,6 +1,19 @@
 #include "sim_server/solvers/newton.h"
 
+#include <cmath>
+
 namespace palpate::sim {
+
+NewtonIteration iterate_newton(const NewtonProblem& problem, double tolerance) {
+  using End = NewtonIteration::End;
+  const Residual residual = problem.residual();
+  if (!std::isfinite(residual.relative)) return {End::kNotFinite, residual.relative};
+  if (residual.relative <= tolerance) return {End::kBalanced, residual.relative};
+  const std::optional<Eigen::VectorXd> d = problem.direction(residual);
+  if (!d) return {End::kNoDirection, residual.relative};
+  return {problem.accept(*d, residual) ? End::kMoved : End::kNotAccepted, residual.relative};
+}
+
 TrialStep line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& force,
                       const ResidualAlong& residual_along) {
   const double push = std::abs(force.dot(d));

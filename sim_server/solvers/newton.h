@@ -1,6 +1,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 
 namespace palpate::sim {
 
@@ -10,6 +11,34 @@ struct Residual {
   double force_scale = 1;  ///< norm of all forces that act, N, > 0
   double relative = 0;     ///< norm of `force`, as a share of `force_scale`
 };
+
+/// Equations r(x) = 0 at a trial point x that moves, as Newton's method sees them.
+struct NewtonProblem {
+  /// Evaluates r at the trial point.
+  std::function<Residual()> residual;
+  /// Finds the search direction (m, by unknowns) for the residual of the trial point; nothing where that is
+  /// rounding, or no direction is to be found.
+  std::function<std::optional<Eigen::VectorXd>(const Residual& residual)> direction;
+  /// Moves the trial point along `d` as far as is acceptable. False if no step was: it stays.
+  std::function<bool(const Eigen::VectorXd& d, const Residual& residual)> accept;
+};
+
+/// Outcome of an iteration of Newton's method.
+struct NewtonIteration {
+  enum class End {
+    kMoved,        ///< the trial point has moved
+    kBalanced,     ///< the residual is within the tolerance
+    kNoDirection,  ///< `NewtonProblem::direction` found none
+    kNotAccepted,  ///< `NewtonProblem::accept` accepted no step
+    kNotFinite,    ///< the trial point lies beyond all numbers
+  };
+  End end = End::kMoved;
+  double relative = 0;  ///< relative residual that the iteration found at the trial point
+};
+
+/// Runs one iteration of Newton's method: evaluates the residual and, unless its relative norm is at most
+/// `tolerance`, moves the trial point along the search direction (Nocedal and Wright 2006, algorithm 11.4).
+NewtonIteration iterate_newton(const NewtonProblem& problem, double tolerance);
 
 /// r(x + s d) for step lengths s along a direction d that is understood; x is where the solver stands.
 using ResidualAlong = std::function<Residual(double s)>;

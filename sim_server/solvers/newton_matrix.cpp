@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "common/parallel.h"
@@ -11,6 +12,9 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kFlies = 1;  // 1/s: the step of the matrix that shows whether a body that flies is sound
+// Least shift of an indefinite stiffness of a body in equilibrium, as a share of its mean diagonal entry: the
+// bending of slender bodies is that much softer, and a larger shift would hide how it goes on.
+constexpr double kLeastShift = 1e-12;
 constexpr double kLeastOfBorder = 0.1;  // eigenvalue, of its mean diagonal, where it was not definite
 
 StiffnessMatrix at_rest(const Solid& solid, const FreeDofs& dofs, bool flies) {
@@ -19,6 +23,10 @@ StiffnessMatrix at_rest(const Solid& solid, const FreeDofs& dofs, bool flies) {
   if (flies) matrix.add_to_diagonal(solid.masses(), kFlies * kFlies);
   matrix.close_empty(matrix.lower().diagonal().mean());
   return matrix;
+}
+
+double mean_of(std::span<const double> values) {
+  return std::reduce(values.begin(), values.end()) / static_cast<double>(values.size());
 }
 
 /// Returns single precision where later iterations correct what the factor answers: not of the linear law,
@@ -31,13 +39,13 @@ SparseCholesky::Precision precision_for(const Material& material, bool cut) {
 }  // namespace
 
 NewtonMatrix::NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
-                           const std::string& where)
+                           const std::string& where, std::optional<SparseCholesky::Precision> precision)
     : dofs_(&dofs),
       alpha_(settings.rayleigh_mass),
       beta_(settings.rayleigh_stiffness),
       matrix_(at_rest(solid, dofs, settings.flies)),
       mean_diagonal_(matrix_.lower().diagonal().mean()),
-      factor_(matrix_.lower(), where, precision_for(solid.material(), settings.cut)) {}
+      factor_(matrix_.lower(), where, precision.value_or(precision_for(solid.material(), settings.cut))) {}
 
 void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<const double> masses,
                          const Viscosity& viscosity, double c, Solid::Scratch& scratch) {
@@ -61,10 +69,13 @@ void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<
   border_is_made_ = true;
   border_misfits_ = false;
   bool definite = factor_.refactor(matrix_.lower());
+  shifted_ = !definite;
   // A quarter of what was enough last time, then ever more (Waechter and Biegler 2006, algorithm IC).
   double added = 0;
-  const double first = std::clamp(more_inertia_ / 4, c * c, 1e5 * c * c);
-  for (double more = first; !definite && more < 1e6 * c * c; more *= 4) {
+  const double most = c > 0 ? 1e6 * c * c : mean_diagonal_ / mean_of(masses);
+  const double least = c > 0 ? c * c : kLeastShift * most;
+  const double first = std::clamp(more_inertia_ / 4, least, most / 10);
+  for (double more = first; !definite && more < most; more *= 4) {
     matrix_.add_to_diagonal(masses, more - added);
     inertia_ += more - added;
     added = more_inertia_ = more;

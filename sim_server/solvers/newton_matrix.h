@@ -14,13 +14,15 @@
 namespace palpate::sim {
 
 /// The matrix of Newton's method in a step of implicit dynamics, A = (1 + beta c) K + (c^2 + alpha c) M, at
-/// the place where it was built last, and its factor. One thread at a time.
+/// the place where it was built last, and its factor. With c = 0 that of a static equilibrium, K. One thread
+/// at a time.
 class NewtonMatrix {
  public:
   /// K of the solid at rest, factored; of one that flies with some inertia. Throws `Error`, beginning with
-  /// `where`, when `dofs`, which must outlive this, do not hold it.
+  /// `where`, when `dofs`, which must outlive this, do not hold it. `precision` of the factor: if absent,
+  /// what iterations in time make up for.
   NewtonMatrix(const Solid& solid, const FreeDofs& dofs, const DynamicsSettings& settings,
-               const std::string& where);
+               const std::string& where, std::optional<SparseCholesky::Precision> precision = {});
 
   /// A of the solid at `x` (nodes, m) with these masses (nodes, kg), factored. Where A is not positive
   /// definite, as of a body about to buckle, with more inertia.
@@ -43,6 +45,8 @@ class NewtonMatrix {
   int make_border(const Solid& solid, std::span<const double> masses);
   /// True if the last `build` came to a factor: no inertia was enough for a body that is turned inside out.
   bool is_definite() const { return definite_; }
+  /// True if A of the last `build` was not positive definite, and got more inertia.
+  bool is_shifted() const { return shifted_; }
   /// True if nodes have been split since the last `build`.
   bool is_bordered() const { return !copies_.empty(); }
   /// True if the factor is of a body of so different a shape that the last border does not fit it.
@@ -97,7 +101,7 @@ class NewtonMatrix {
   double inertia_ = 0;            // 1/s^2, what masses are times in A
   std::map<int, Blocks> shapes_;  // since the last `build`, of tetrahedra
   std::vector<Copy> copies_;      // since the last `build`, in order
-  bool border_is_made_ = true, border_misfits_ = false, definite_ = true;
+  bool border_is_made_ = true, border_misfits_ = false, definite_ = true, shifted_ = false;
   // By copies, three ways each, N/m: how forces follow those ways, on the body as if none had become two, and
   // on the copies; what the body does against the first; and the Schur complement of the whole.
   Eigen::MatrixXd border_, corner_, response_;

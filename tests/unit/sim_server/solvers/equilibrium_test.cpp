@@ -1,6 +1,7 @@
 // Static equilibria against closed forms and published figures, with the order in which they converge.
 #include "sim_server/solvers/equilibrium.h"
 
+#include <cmath>
 #include <numbers>
 
 #include "common/error.h"
@@ -286,6 +287,43 @@ TEST_CASE("equilibrium: turned by a quarter, a body bears its load as before") {
     for (std::size_t i = 0; i < straight.size(); ++i)
       largest = std::max(largest, (straight[i] - turned[i]).norm());
     CHECK(largest < 1e-9);
+  }
+}
+
+TEST_CASE("equilibrium: beyond Euler's load a straight column is refused, or found bent as the elastica") {
+  // Held below, loaded above: P_cr = pi^2 E I / (4 l^2). A straight column is in equilibrium under any load,
+  // but beyond that one unstable. Bent, with its top turned by 2 asin k, it bears P_cr (2 K(k) / pi)^2, with
+  // the top 2 k / K(k) of its length aside (Timoshenko and Gere 1961, section 2.7).
+  const double e = 1e6, length = 1, side = 0.025, excess = 1.2;
+  const double critical = std::pow(std::numbers::pi / length, 2) / 4 * e * std::pow(side, 4) / 12;
+  const TetMesh mesh = with_nodes(grid_block(lines(0, length, 25), lines(0, side, 1), lines(0, side, 1)),
+                                  ElementKind::kQuadratic);
+  for (const ElasticLaw law : {ElasticLaw::kCorotational, ElasticLaw::kNeoHookean}) {
+    const Solid solid(mesh, material(e, 0, ElementKind::kQuadratic, law));
+    std::vector<HeldAxes> held;
+    std::vector<Vec3> forces(static_cast<std::size_t>(solid.nodes()), Vec3::Zero());
+    std::vector<std::size_t> top;
+    for (std::size_t i = 0; i < forces.size(); ++i) {
+      held.push_back(solid.rest()[i][0] == 0 ? kAllAxes : 0);
+      if (solid.rest()[i][0] > length - 1e-9) top.push_back(i);
+    }
+    for (const std::size_t i : top) forces[i][0] = -excess * critical / static_cast<double>(top.size());
+    CAPTURE(static_cast<int>(law));
+    double reached = 0;
+    try {
+      const Equilibrium found = find_equilibrium(
+          solid,
+          {[&](std::span<const Vec3>, std::span<Vec3> f) { std::ranges::copy(forces, f.begin()); }, held},
+          "test", [&](double fraction) { reached = fraction; });
+      double k = 0;
+      while (std::pow(2 * std::comp_ellint_1(k) / std::numbers::pi, 2) < excess) k += 1e-5;
+      Vec3 aside = found.x[top.front()] - solid.rest()[top.front()];
+      aside[0] = 0;
+      CHECK(aside.norm() == Approx(2 * k / std::comp_ellint_1(k) * length).epsilon(0.03));
+    } catch (const Error& error) {
+      CHECK_THAT(error.what(), Catch::Contains("no stable equilibrium"));
+      CHECK(reached == Approx(1 / excess).epsilon(0.01));
+    }
   }
 }
 

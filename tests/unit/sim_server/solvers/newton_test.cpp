@@ -43,6 +43,39 @@ const Eigen::MatrixXd& identity() {
 
 }  // namespace
 
+TEST_CASE("Newton's method: an iteration goes where the tangent leads, and says how it ended") {
+  using End = NewtonIteration::End;
+  // r(x) = 8 - x^3 from x = 3: the tangent crosses zero at 3 - 19 / 27.
+  double x = 3;
+  const NewtonProblem spring{
+      .residual =
+          [&] {
+            return Residual{one(8 - x * x * x), 8, std::abs(8 - x * x * x) / 8};
+          },
+      .direction = [&](const Residual& r) { return std::optional(one(r.force[0] / (3 * x * x))); },
+      .accept =
+          [&](const Eigen::VectorXd& d, const Residual&) {
+            x += d[0];
+            return true;
+          }};
+  const NewtonIteration first = iterate_newton(spring, 1e-9);
+  CHECK(first.end == End::kMoved);
+  CHECK(first.relative == Approx(19.0 / 8));
+  CHECK(x == Approx(3 - 19.0 / 27).epsilon(1e-14));
+  for (int i = 0; i < 6; ++i) iterate_newton(spring, 1e-9);
+  CHECK(iterate_newton(spring, 1e-9).end == End::kBalanced);
+  CHECK(x == Approx(2).epsilon(1e-9));
+  NewtonProblem stuck = spring;
+  x = 3;
+  stuck.accept = [](const Eigen::VectorXd&, const Residual&) { return false; };
+  CHECK(iterate_newton(stuck, 1e-9).end == End::kNotAccepted);
+  stuck.direction = [](const Residual&) { return std::optional<Eigen::VectorXd>(); };
+  CHECK(iterate_newton(stuck, 1e-9).end == End::kNoDirection);
+  x = 1e300;
+  CHECK(iterate_newton(spring, 1e-9).end == End::kNotFinite);
+  CHECK(x == 1e300);
+}
+
 TEST_CASE("newton: the line search halves until the spring pulls back no harder than it was pushed") {
   // (s / s0)^3 <= 2 is what it asks for.
   for (const auto& [balance, length] : {std::pair{1.0, 1.0}, {0.8, 1.0}, {0.79, 0.5}, {0.1, 0.125}}) {
