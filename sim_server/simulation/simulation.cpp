@@ -21,8 +21,6 @@
 namespace palpate::sim {
 namespace {
 
-constexpr std::size_t kSpacing = 2;   // instants: how far apart those are that tell where a tool goes on to
-constexpr double kLongestLead = 0.5;  // of the tool radius: how far ahead of itself a tool is believed to be
 constexpr int kLateParts = 4;  // of a step: over the last of so many parts chattering forces are averaged
 constexpr double kAnywhere = 1e150;  // m
 constexpr double kRunAway = 3;       // of the organ's size: farther from rest no tissue goes
@@ -62,16 +60,15 @@ std::vector<ToolContact> make_tools(const Scene& scene, std::span<const Vec3> re
 }
 
 /// The tissue gets room for what these tools load. Returns how many loads all of them have at most.
-std::size_t make_room_for_loads(const std::vector<ToolContact>& tools, Tissue& tissue) {
+std::size_t make_room_for_loads(const ToolGroup& tools, Tissue& tissue) {
   std::vector<int> most_loads;
   std::vector<double> radii;
-  for (const ToolContact& tool : tools) {
+  for (const ToolContact& tool : tools.all()) {
     most_loads.push_back(tool.max_nodes());
     radii.push_back(tool.radius());
   }
   tissue.reserve(most_loads, radii);
-  if (std::ranges::any_of(tools, [](const ToolContact& tool) { return tool.has_friction(); }))
-    tissue.before.assign(tissue.positions.begin(), tissue.positions.end());
+  if (tools.have_friction()) tissue.before.assign(tissue.positions.begin(), tissue.positions.end());
   return static_cast<std::size_t>(std::accumulate(most_loads.begin(), most_loads.end(), 0));
 }
 
@@ -138,31 +135,14 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   tissue_.free = tissue_.positions = motion.positions;
   tissue_.velocities = motion.velocities;
   const std::vector<int> held = on_surface(fixed, organ_.surface);
-  tools_ = make_tools(scene, tissue_.free, organ_.surface, std::move(touchable), held, progress);
-  const std::size_t all_loads = make_room_for_loads(tools_, tissue_);
-  if (tools_.size() > 1) {
-    coupling_.emplace(tools_.size(), organ_.rest.size(), all_loads);
-    joint_.emplace(tools_, organ_.rest.size());
-    grips_.emplace(tools_);
-  }
-  tracks_.resize(tools_.size());
-  for (Track& track : tracks_) track.recent.reserve(2 * kSpacing + 1);
-  make_room_for_modes();
-  places_.reserve(tools_.size());
+  tools_ = ToolGroup(make_tools(scene, tissue_.free, organ_.surface, std::move(touchable), held, progress),
+                     organ_.rest.size());
+  publisher_ = StepPublisher(tools_.size(), organ_.rest.size(), make_room_for_loads(tools_, tissue_));
+  publisher_.reserve(published_modes(), organ_.rest.size());
+  state_.paths.resize(tools_.size());
+  state_.means.resize(tools_.size());
+  state_.answers.resize(tools_.size());
   inputs_.resize(tools_.size());
-  answers_.resize(tools_.size());
-}
-
-void Simulation::make_room_for_modes() {
-  const PublishedModes* const modes = published_modes();
-  if (modes == nullptr) return;
-  ModalMotion& room = published_.modes;
-  room.q = room.v = Eigen::VectorXd::Zero(modes->published);
-  room.z.setZero(modes->published, static_cast<Eigen::Index>(modes->relaxations.size()));
-  room.psi.assign(organ_.rest.size() * modes->relaxations.size(), Vec3::Zero());
-  for (Track& track : tracks_) track.modal_loads = room.q;
-  pair_.reserve(2, 0);
-  pair_.free.resize(2);
 }
 
 const PublishedModes* Simulation::published_modes() const noexcept {
@@ -192,173 +172,119 @@ std::span<const Vec3> Simulation::nodes() const noexcept {
 std::span<const ToolAnswer> Simulation::step(std::span<const ToolInput> inputs, double dt) noexcept {
   assert(inputs.size() == tools_.size());
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    if (inputs[i].enters) separate_tool(i);
+    if (inputs[i].enters) release_tool(i);
   }
   try {
     advance(inputs, dt);
-    status_.failed = false;
+    state_.failed = false;
   } catch (const std::bad_alloc&) {
-    ++counts_.failures.out_of_memory;
+    ++state_.failures.out_of_memory;
     hold_answers(inputs);
   } catch (...) {
-    ++counts_.failures.other;
+    ++state_.failures.other;
     hold_answers(inputs);
   }
   count_flagged();
-  return answers_;
+  return state_.answers;
 }
 
 void Simulation::count_flagged() noexcept {
-  if (std::ranges::none_of(answers_, &ToolAnswer::flagged)) return;
+  if (std::ranges::none_of(state_.answers, &ToolAnswer::flagged)) return;
   using Balance = NonlinearModel::Balance;
   const NonlinearModel* const nonlinear = tissue_.traits.nonlinear;
   const Balance balance = nonlinear ? nonlinear->balance() : Balance::kBalanced;
-  FlaggedSteps& flagged = counts_.flagged;
-  std::uint64_t& reason = status_.failed                    ? flagged.threw
-                          : status_.ran_away                ? flagged.ran_away
+  FlaggedSteps& flagged = state_.flagged;
+  std::uint64_t& reason = state_.failed                     ? flagged.threw
+                          : state_.ran_away                 ? flagged.ran_away
                           : balance == Balance::kInsideOut  ? flagged.inside_out
                           : balance == Balance::kUnbalanced ? flagged.not_balanced
-                          : !status_.tools_settled          ? flagged.tools
+                          : !tools_.settled()               ? flagged.tools
                                                             : flagged.contact;
   ++reason;
 }
 
 /// Holds the answers after a step that threw. The forces of a tissue that answers no more fade.
 void Simulation::hold_answers(std::span<const ToolInput> inputs) noexcept {
-  for (std::size_t i = 0; i < answers_.size(); ++i) {
-    ToolForce held = inputs[i].pose ? answers_[i] : ToolForce{};
-    if (status_.failed) fade(held);
+  for (std::size_t i = 0; i < state_.answers.size(); ++i) {
+    ToolForce held = inputs[i].pose ? state_.answers[i] : ToolForce{};
+    if (state_.failed) fade(held);
     held.tangent.setZero();
     held.flagged = inputs[i].pose.has_value();
-    answers_[i] = {};
-    static_cast<ToolForce&>(answers_[i]) = held;
+    state_.answers[i] = {};
+    static_cast<ToolForce&>(state_.answers[i]) = held;
   }
-  status_.failed = true;
+  state_.failed = true;
 }
 
 void Simulation::advance(std::span<const ToolInput> inputs, double dt) {
-  for (Track& track : tracks_) {
-    track.mean.setZero();
-    track.late_mean.setZero();
-  }
+  std::ranges::fill(state_.means, Mean{});
   tissue_.start_step();
-  if (joint_) joint_->forget();
-  if (cut_ && cut_->start_step(inputs, status_.time, dt, cut_organ())) {
-    ++published_.version;
-    make_room_for_modes();
+  if (cut_ && cut_->start_step(inputs, state_.time, dt, cut_organ())) {
+    ++state_.published_version;
+    publisher_.reserve(published_modes(), organ_.rest.size());
   }
-  for (std::size_t i = 0; i < tools_.size(); ++i) tools_[i].set_buttons(inputs[i].buttons);
-  if (tissue_.traits.cuttable != nullptr && instants() > 1) restrict_contact(inputs);
+  tools_.start_step(inputs);
+  if (tissue_.traits.cuttable != nullptr && instants() > 1)
+    tools_.restrict_contact(inputs, state_.paths, organ_.surface.triangles, tissue_);
   for (int instant = 1; instant <= instants(); ++instant)
     advance_to_instant(inputs, instant, dt / instants());
-  for (std::size_t i = 0; i < tools_.size(); ++i) tracks_[i].from = inputs[i].pose;
-  status_.ran_away = ran_away();
+  for (std::size_t i = 0; i < tools_.size(); ++i) state_.paths[i].end_step(inputs[i].pose);
+  state_.ran_away = ran_away();
   for (std::size_t i = 0; i < tools_.size(); ++i) answer(i, inputs[i], dt);
-  if (cut_) cut_->end_step(inputs, status_.time, dt, tools_, answers_);
-  status_.time += dt;
-  couple(inputs);
-  for (std::size_t i = 0; i < tools_.size(); ++i) add_wanted(i, inputs[i]);
+  if (cut_) cut_->end_step(inputs, state_.time, dt, tools_.all(), state_.answers);
+  state_.time += dt;
+  publisher_.couple(inputs, after_step());
+  for (std::size_t i = 0; i < tools_.size(); ++i)
+    publisher_.add_wanted(i, inputs[i], published_modes(), instants() == 1, after_step(), state_.answers[i]);
 }
 
 /// Sets the force on a tool.
 void Simulation::answer(std::size_t tool, const ToolInput& input, double dt) {
   ToolContact& contact = tools_[tool];
-  ToolAnswer& answer = answers_[tool];
+  ToolAnswer& answer = state_.answers[tool];
   const ToolForce before = answer;
   answer = {};
   static_cast<ToolForce&>(answer) = before;
-  if (status_.ran_away && contact.placed()) return fade(answer);
+  if (state_.ran_away && contact.placed()) return fade(answer);
   if (instants() > 1)
     contact.predict_tangent(std::max(dt, input.request.ahead ? input.request.ahead->seconds : 0));
   const bool publishes_tangents = tissue_.traits.publishes_tangents;
-  if (input.request.tangent && publishes_tangents) differentiate(tool);
+  if (input.request.tangent && publishes_tangents) tools_.differentiate(tool, tissue_);
   static_cast<ToolForce&>(answer) = contact.force();
-  if (!publishes_tangents) answer.force = tracks_[tool].late_mean;
-  answer.mean_force = tracks_[tool].mean;
+  if (!publishes_tangents) answer.force = state_.means[tool].late;
+  answer.mean_force = state_.means[tool].all;
   if (cut_) cut_->resist(tool, contact, dt, answer);
 }
 
-void Simulation::differentiate(std::size_t tool) {
-  if (joint_ && joint_->has_solved(tool))
-    return joint_->differentiate(tool, tools_[tool], tissue_.known_to(tool));
-  tools_[tool].differentiate(tissue_.touched_by(tool));
+/// Takes a tool away: the tissue becomes free of it.
+void Simulation::release_tool(std::size_t tool) noexcept {
+  state_.answers[tool] = {};
+  state_.paths[tool].clear();
+  tools_.release(tool, tissue_);
 }
 
-/// Returns where contact is solved at an instant of a step: where the tool is then, or, where the model's
-/// force leads, will be at the next; after the last, going on along the parabola through where it was lately.
-PathPoint Simulation::contact_point(std::size_t tool, const ToolInput& input, int instant) const {
-  if (!tissue_.traits.leading_force) return at_instant(tool, input, instant);
-  if (instant < instants()) return at_instant(tool, input, instant + 1);
-  PathPoint point = at_instant(tool, input, instant);
-  const std::vector<ToolPose>& were = tracks_[tool].recent;  // the newest first: this one
-  const std::size_t spacing = std::min<std::size_t>(kSpacing, (were.size() - 1) / 2);
-  if (spacing == 0) return point;
-  const Vec3 &now = were[0].p_W, &before = were[spacing].p_W, &first = were[2 * spacing].p_W;
-  const auto n = static_cast<double>(spacing);
-  const Vec3 bend = (now - 2 * before + first) / (n * n), motion = (now - before) / n + (n + 1) / 2 * bend;
-  if (motion.norm() <= kLongestLead * tools_[tool].radius()) point.pose.p_W += motion;
-  const double turn =
-      were[0].q_W.angularDistance(were[1].q_W) * std::max(tools_[tool].shape().length, tools_[tool].radius());
-  if (turn <= kLongestLead * tools_[tool].radius())
-    point.pose.q_W = (were[0].q_W * were[1].q_W.conjugate() * were[0].q_W).normalized();
-  return point;
-}
-
-void Simulation::add_recent(std::size_t tool, const ToolPose& pose) {
-  std::vector<ToolPose>& were = tracks_[tool].recent;
-  if (were.size() > 2 * kSpacing) were.pop_back();
-  were.insert(were.begin(), pose);
-}
-
-/// Returns where a tool is at an instant of a step, from 1 to the last.
-PathPoint Simulation::at_instant(std::size_t tool, const ToolInput& input, int instant) const {
-  const bool last = input.path.size() + 1 == static_cast<std::size_t>(instants());
-  if (instant == instants()) return {*input.pose, last ? input.bend : Bend{}};
-  if (last) return input.path[static_cast<std::size_t>(instant) - 1];
-  if (!tracks_[tool].from) return {*input.pose};  // it appears there
-  const double fraction = static_cast<double>(instant) / instants();
-  const ToolPose &from = *tracks_[tool].from, &to = *input.pose;
-  return {ToolPose((1 - fraction) * from.p_W + fraction * to.p_W, from.q_W.slerp(fraction, to.q_W))};
-}
-
-/// The tissue goes on by `dt` (s), then contact is solved with the tools where they are by then.
+/// The tissue goes on by `dt` (s), then contact is solved with the tools where they are by then; or, where
+/// the model's force leads, where they will be at the next instant.
 void Simulation::advance_to_instant(std::span<const ToolInput> inputs, int instant, double dt) {
   move_organ(dt);
-  for (std::size_t i = 0; i < tools_.size(); ++i) {
-    if (!inputs[i].pose) separate_tool(i);
-    if (tools_.size() > 1) tools_[i].keep(tissue_.loads_of(i));
-  }
   std::array<std::optional<PathPoint>, kMaxTools> to;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
-    if (!inputs[i].pose) continue;
-    if (tissue_.traits.leading_force) add_recent(i, at_instant(i, inputs[i], instant).pose);
-    to[i] = contact_point(i, inputs[i], instant);
+    InstantPath& path = state_.paths[i];
+    if (!inputs[i].pose) {
+      release_tool(i);
+    } else if (tissue_.traits.leading_force) {
+      to[i] = path.ahead_of_instant(inputs[i], instant, instants(), tools_[i].shape());
+    } else {
+      to[i] = path.at_instant(inputs[i], instant, instants());
+    }
   }
-  status_.tools_settled = true;
-  advance_tools(std::span(to).first(tools_.size()));
-  solve_contacts();
-  if (!status_.tools_settled) restore_touching();
+  tools_.advance(std::span(to).first(tools_.size()), tissue_);
   if (!tissue_.before.empty()) std::ranges::copy(tissue_.positions, tissue_.before.begin());
   const int late = (instants() + kLateParts - 1) / kLateParts;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
-    tracks_[i].mean += tools_[i].force().force / instants();
-    if (instant > instants() - late) tracks_[i].late_mean += tools_[i].force().force / late;
+    state_.means[i].all += tools_[i].force().force / instants();
+    if (instant > instants() - late) state_.means[i].late += tools_[i].force().force / late;
   }
-}
-
-/// Contact again where a linearisation about where it led says something else. Where no
-/// more contact is to be found in this step, the body is still brought to balance with the last.
-void Simulation::solve_contacts() {
-  bool found = true;
-  NonlinearModel* const nonlinear = tissue_.traits.nonlinear;
-  if (nonlinear == nullptr) return;
-  while (const auto motion = nonlinear->relinearise()) {
-    tissue_.set_free(*motion);
-    found = found && std::ranges::none_of(tools_, &ToolContact::exhausted);
-    if (!found) continue;
-    settle();
-  }
-  if (!found || !balanced()) flag_contacts();
 }
 
 /// True if some of the surface is at no finite place, or beyond any that an organ that is held can get to.
@@ -384,31 +310,34 @@ bool Simulation::ran_away() const noexcept {
 /// inside. From there they walk to where they are now.
 void Simulation::move_organ(double dt) {
   const bool moves = !tissue_.velocities.empty();
-  for (std::size_t i = 0; moves && i < tools_.size(); ++i)
-    tracks_[i].surface_motion =
-        0.5 * dt *
-        tools_[i].surface_velocity(tools_[i].place(), tissue_, tissue_.velocities, tissue_.loads_of(i));
+  std::array<Vec3, kMaxTools> motions;
+  motions.fill(Vec3::Zero());
+  const auto add_half = [&] {
+    for (std::size_t i = 0; moves && i < tools_.size(); ++i)
+      motions[i] +=
+          0.5 * dt *
+          tools_[i].surface_velocity(tools_[i].place(), tissue_, tissue_.velocities, tissue_.loads_of(i));
+  };
+  add_half();
   carry_before(tissue_, 0.5 * dt);
   tissue_.set_free(tissue_.model->free_motion(dt));
   carry_before(tissue_, 0.5 * dt);
-  for (std::size_t i = 0; moves && i < tools_.size(); ++i)
-    tracks_[i].surface_motion +=
-        0.5 * dt *
-        tools_[i].surface_velocity(tools_[i].place(), tissue_, tissue_.velocities, tissue_.loads_of(i));
-  bool pressed = false;
-  for (std::size_t i = 0; moves && i < tools_.size(); ++i) {
-    tools_[i].carry(tracks_[i].surface_motion);
-    tissue_.carry(i, tracks_[i].surface_motion);
-    if (!tools_[i].placed()) continue;
-    tissue_.apply_loads(i);
-    pressed = true;
-  }
-  if (moves && !pressed) tissue_.press_by_none();
+  add_half();
+  if (moves) tools_.carry(std::span(motions).first(tools_.size()), tissue_);
 }
 
 ToolForce Simulation::step(const ToolPose& pose, double dt) noexcept {
   inputs_.front().pose = pose;
   return step(inputs_, dt).front();
+}
+
+Linearisation Simulation::linearise(std::size_t tool, const Vec3& p_W, const ToolForce* known) {
+  return StepPublisher::linearise(tool, p_W, known, after_step());
+}
+
+std::optional<double> Simulation::gap(std::size_t tool) const noexcept {
+  if (!tools_[tool].placed() || tools_[tool].touchable().empty()) return {};
+  return tools_[tool].nearest(tools_[tool].place(), tissue_).gap;
 }
 
 std::vector<MemoryPart> Simulation::memory() const {
@@ -420,17 +349,16 @@ std::vector<MemoryPart> Simulation::memory() const {
   parts.push_back({"surface", organ_.surface.vertices.size() * sizeof(int) +
                                   organ_.surface.triangles.size() * sizeof(Triangle)});
   if (cut_) parts.push_back({"resection", cut_->bytes()});
-  const std::size_t coupling_bytes = coupling_ ? coupling_->bytes() / tools_.size() : 0;  // of each
+  const std::size_t shared_bytes = publisher_.bytes() / tools_.size();  // of each
   for (std::size_t i = 0; i < tools_.size(); ++i)
-    parts.push_back(
-        {contact_part(i, tools_.size()), tools_[i].bytes() + tissue_.bytes_of(i) + coupling_bytes});
+    parts.push_back({contact_part(i, tools_.size()), tools_[i].bytes() + tissue_.bytes_of(i) + shared_bytes});
   return parts;
 }
 
 std::uint64_t Simulation::state_hash() const noexcept {
   Fnv1a hash;
   hash.add(tissue_.positions.data(), tissue_.positions.size_bytes());
-  for (const ToolForce& answer : answers_) hash.add(answer.force);
+  for (const ToolForce& answer : state_.answers) hash.add(answer.force);
   if (cut_) hash.add(organ_.surface.triangles.data(), organ_.surface.triangles.size() * sizeof(Triangle));
   return hash.value();
 }

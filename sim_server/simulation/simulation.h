@@ -3,14 +3,10 @@
 #include <memory>
 #include <optional>
 
-#include "sim_server/contact/joint_contact.h"
-#include "sim_server/contact/joint_grip.h"
-#include "sim_server/contact/tool_step.h"
-#include "sim_server/cutting/tissue_cut.h"
 #include "sim_server/mesh/tet_mesh.h"
 #include "sim_server/scene/scene.h"
 #include "sim_server/simulation/flagged_steps.h"
-#include "sim_server/simulation/tool_coupling.h"
+#include "sim_server/simulation/step_publisher.h"
 #include "sim_server/tissue/model_inputs.h"
 
 namespace palpate::sim {
@@ -71,7 +67,7 @@ class Simulation {
   /// to one tool alone, as no sample tells its memory of the loads of others.
   const PublishedModes* published_modes() const noexcept;
   /// Number that changes whenever another surface, or none, is published. Stays 0 where nothing is cut.
-  std::uint32_t published_version() const { return published_.version; }
+  std::uint32_t published_version() const { return state_.published_version; }
   /// Surface published near the tools of tissue that can be cut; null: none now, or all of it for good.
   std::shared_ptr<const PublishedSurface> published_surface() const noexcept;
   const ToolContact& tool(std::size_t i) const { return tools_[i]; }
@@ -102,8 +98,8 @@ class Simulation {
   void set_cut_options(CutOptions options);
   /// Returns the remaining and removed tissue of an organ that can be cut; null: it cannot.
   const Resection* resection() const { return cut_ ? &cut_->resection() : nullptr; }
-  const StepFailures& failures() const { return counts_.failures; }
-  const FlaggedSteps& flagged() const { return counts_.flagged; }
+  const StepFailures& failures() const { return state_.failures; }
+  const FlaggedSteps& flagged() const { return state_.flagged; }
 
  private:
   friend class SimulationState;
@@ -114,77 +110,41 @@ class Simulation {
     std::vector<Vec3> rest;   // surface vertices, m
     double furthest = 1e150;  // m from rest: beyond that a body that is held ran away
   };
-  /// Path of one tool, and its forces within the step.
-  struct Track {
-    std::optional<ToolPose> from;        // pose of the step before
-    std::vector<ToolPose> recent;        // at the last instants, the newest first
-    Vec3 mean = Vec3::Zero();            // of the forces at the instants, N
-    Vec3 late_mean = Vec3::Zero();       // and at the last of them
-    Vec3 surface_motion = Vec3::Zero();  // of the surface at the tool in this step, m
-    Eigen::VectorXd modal_loads;         // of the published modes, by the other tools
+  /// Mean forces of one tool within the step.
+  struct Mean {
+    Vec3 all = Vec3::Zero();   // at the instants, N
+    Vec3 late = Vec3::Zero();  // at the last of them, N
   };
-  /// Flags of the step in hand, and the clock.
-  struct Status {
-    double time = 0;        // s, of all steps
-    bool released = false;  // some tissue was, since the last step
-    bool tools_settled = true, ran_away = false, coupled = false;
-    bool failed = false;  // the last step
-  };
-  /// Data published to clients.
-  struct Published {
-    std::uint32_t version = 0;
-    ModalMotion modes;
-  };
-  struct Counts {
-    StepFailures failures;
-    FlaggedSteps flagged;
+  /// What a step changes beside organ, tissue and tools.
+  struct State {
+    double time = 0;                        // s, of all steps
+    bool failed = false, ran_away = false;  // in the last step
+    std::uint32_t published_version = 0;
+    StepFailures failures = {};
+    FlaggedSteps flagged = {};
+    std::vector<InstantPath> paths = {};  // of each tool
+    std::vector<Mean> means = {};
+    std::vector<ToolAnswer> answers = {};
   };
 
   void advance(std::span<const ToolInput> inputs, double dt);
-  void answer(std::size_t tool, const ToolInput& input, double dt);
-  CutOrgan cut_organ() { return {*organ_.mesh, organ_.surface, organ_.rest, tissue_, tools_}; }
-  void make_room_for_modes();
-  PathPoint at_instant(std::size_t tool, const ToolInput& input, int instant) const;
-  PathPoint contact_point(std::size_t tool, const ToolInput& input, int instant) const;
-  void add_recent(std::size_t tool, const ToolPose& pose);
-  void separate_tool(std::size_t tool) noexcept;
   void advance_to_instant(std::span<const ToolInput> inputs, int instant, double dt);
-  void count_flagged() noexcept;
-  void hold_answers(std::span<const ToolInput> inputs) noexcept;
-  bool searches_everywhere(std::size_t tool, const ToolInput& input) const noexcept;
-  void restrict_contact(std::span<const ToolInput> inputs);
   void move_organ(double dt);
-  void advance_tools(std::span<const std::optional<PathPoint>> to);
-  void settle();
-  void settle_grasps(bool converged);
-  void differentiate(std::size_t tool);
-  void flag_contacts() noexcept;
-  void solve_contacts();
-  void restore_touching();
-  void couple(std::span<const ToolInput> inputs);
-  Linearisation linearise_coupled(std::size_t tool, const Vec3& p_W, const Vec3& there,
-                                  const ToolForce* known);
-  void add_wanted(std::size_t tool, const ToolInput& input);
-  Vec3 surface_shift(std::size_t tool, const Vec3& p_W);
-  Vec3 residual_shift(std::size_t tool, int vertex);
-  void publish_modes(std::size_t tool);
+  void answer(std::size_t tool, const ToolInput& input, double dt);
+  void hold_answers(std::span<const ToolInput> inputs) noexcept;
+  void count_flagged() noexcept;
+  void release_tool(std::size_t tool) noexcept;
   bool ran_away() const noexcept;
+  CutOrgan cut_organ() { return {*organ_.mesh, organ_.surface, organ_.rest, tissue_, tools_.all()}; }
+  OrganAfterStep after_step() { return {tissue_, tools_, organ_.rest, cut()}; }
 
   Organ organ_;
   std::optional<TissueCut> cut_;
   Tissue tissue_;
-  std::vector<ToolContact> tools_;
-  std::optional<ToolCoupling> coupling_;  // of several tools
-  std::optional<JointContact> joint_;     // of several tools
-  std::optional<JointGrip> grips_;        // of several tools
-  std::vector<Track> tracks_;             // of each tool
-  std::vector<Neighbourhood> places_;     // around the paths of the tools in this step
-  std::vector<ToolInput> inputs_;         // for the step of tool 0 alone
-  std::vector<ToolAnswer> answers_;
-  ContactPatch pair_;  // of two vertices: how one moves the other
-  Published published_;
-  Status status_;
-  Counts counts_;
+  ToolGroup tools_;
+  StepPublisher publisher_;
+  State state_;
+  std::vector<ToolInput> inputs_;  // for the step of tool 0 alone
 };
 
 /// Returns "contact", or "contact of tool 2" where there are several: the name of a tool's part in reports.

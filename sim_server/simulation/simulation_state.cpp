@@ -10,13 +10,9 @@ struct SimulationState::Saved {
   std::optional<TissueCut> cut;
   std::any model;
   Tissue::State tissue;
-  std::vector<ToolContact> tools;
-  std::optional<ToolCoupling> coupling;
-  std::vector<Simulation::Track> tracks;
-  std::vector<ToolAnswer> answers;
-  Simulation::Published published;
-  Simulation::Status status;
-  Simulation::Counts counts;
+  ToolGroup::State tools;
+  StepPublisher publisher;
+  Simulation::State state;
 };
 
 SimulationState Simulation::save() {
@@ -24,7 +20,7 @@ SimulationState Simulation::save() {
   SimulationState state;
   state.saved_ = std::make_shared<const SimulationState::Saved>(SimulationState::Saved{
       *organ_.mesh, organ_.surface, organ_.rest, cut_, model != nullptr ? model->save() : std::any(),
-      tissue_.save(), tools_, coupling_, tracks_, answers_, published_, status_, counts_});
+      tissue_.save(), tools_.save(), publisher_, state_});
   return state;
 }
 
@@ -37,14 +33,9 @@ void Simulation::restore(const SimulationState& state) {
   organ_.rest = saved.rest;
   cut_ = saved.cut;
   tissue_.restore(saved.tissue, motion);
-  for (std::size_t i = 0; i < tools_.size(); ++i) tools_[i].restore_from(saved.tools[i]);
-  coupling_ = saved.coupling;
-  if (joint_) joint_->forget();
-  tracks_ = saved.tracks;
-  published_ = saved.published;
-  answers_ = saved.answers;
-  status_ = saved.status;
-  counts_ = saved.counts;
+  tools_.restore(saved.tools);
+  publisher_ = saved.publisher;
+  state_ = saved.state;
 }
 
 }  // namespace palpate::sim
