@@ -1,6 +1,5 @@
 #include "common/fast_blas.h"
 #include "common/program.h"
-#include "sim_server/commands/cache.h"
 #include "sim_server/commands/condense.h"
 #include "sim_server/commands/explain.h"
 #include "sim_server/commands/gallery.h"
@@ -22,7 +21,7 @@ palpate::Command sim_server() {
           .footer = "Example: sim_server run configs/scenes/liver.toml",
           .commands = {run_command(), record_command(), explain_command(), solve_command(), study_command(),
                        condense_command(), scenes_command(), mesh_command(), replay_command(), view_command(),
-                       keygen_command(), cache_command()}};
+                       keygen_command()}};
 }
 
 }  // namespace

@@ -23,25 +23,17 @@ Condensed::Condensed(std::filesystem::path folder, MakeFactor make_factor)
 
 std::optional<MappedMatrix> Condensed::find(const Digest& key, const std::string& what,
                                             const std::string& scene) const {
-  const std::filesystem::path file = entry_file(folder_, key);
-  std::error_code failed;
-  if (std::filesystem::exists(file, failed)) {
-    try {
-      return map_entry(file, key);
-    } catch (const Error& error) {
-      fail("{}; remove it and condense the scene again", error.what());
-    }
+  try {
+    if (auto found = map_entry(entry_file(folder_, key), key)) return found;
+  } catch (const Error& error) {
+    fail("{}; remove it and condense the scene again", error.what());
   }
-  if (!makes())
+  if (!make_factor_)
     fail(
         "--condensed: \"{}\" holds no {} of {}: its mesh, material, [[fixed]], `reach` or model is another; "
         "`sim_server condense {} --out {}` makes them",
         folder_.string(), what, scene, scene, folder_.string());
   return {};
-}
-
-void Condensed::keep(const EntryHeader& header, const Eigen::Ref<const Eigen::MatrixXd>& matrix) const {
-  write_entry(folder_, header, matrix);
 }
 
 }  // namespace palpate::sim

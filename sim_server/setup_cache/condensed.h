@@ -1,5 +1,5 @@
 #pragma once
-#include "sim_server/setup_cache/cache_entry.h"
+#include "sim_server/setup_cache/setup_cache.h"
 #include "sim_server/sparse/factored_matrix.h"
 
 namespace palpate::sim {
@@ -15,21 +15,17 @@ class Condensed {
   /// can be stored there.
   Condensed(std::filesystem::path folder, MakeFactor make_factor);
 
-  bool makes() const { return static_cast<bool>(make_factor_); }
-  /// Returns a factor by `make_factor`, if `makes()`. Throws what `make_factor` throws.
-  std::unique_ptr<FactoredMatrix> factor(const SparseMatrix& lower, std::span<const int> stored,
-                                         FactorUse use, const std::string& where) const {
-    return make_factor_(lower, stored, use, where);
-  }
+  /// Empty where the folder is only read.
+  const MakeFactor& make_factor() const { return make_factor_; }
 
   /// The matrix kept under a key. Throws `Error`, with the file, where it is not sound; and where it is not
   /// there and none is made, with `what` it would be ("modes of vibration") of which `scene`.
   std::optional<MappedMatrix> find(const Digest& key, const std::string& what,
                                    const std::string& scene) const;
   /// Keeps a matrix: whole or not at all. Throws `Error` where that is not possible.
-  void keep(const EntryHeader& header, const Eigen::Ref<const Eigen::MatrixXd>& matrix) const;
-
-  const std::filesystem::path& folder() const { return folder_; }
+  void keep(const Digest& key, double seconds, const Eigen::Ref<const Eigen::MatrixXd>& matrix) const {
+    write_entry(folder_, key, seconds, matrix);
+  }
 
  private:
   std::filesystem::path folder_;

@@ -1,109 +1,170 @@
 #include "sim_server/setup_cache/setup_cache.h"
 
-#include <algorithm>
-#include <cstdlib>
+#include <array>
+#include <cassert>
+#include <cerrno>
+#include <cstring>
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <fstream>
+#include <random>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <vector>
 
 #include "common/error.h"
 #include "common/log.h"
 #include "common/memory_budget.h"
 
 namespace palpate::sim {
-namespace {
 
 namespace fs = std::filesystem;
 
-/// The entries of a folder; none where it cannot be read.
-std::vector<fs::path> entries_in(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code failed;
-  for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed)) {
-    if (is_entry_name(at->path().filename().native()) && at->is_regular_file(failed))
-      files.push_back(at->path());
-  }
-  return files;
+namespace {
+
+constexpr std::size_t kPage = 4096;  // of the header: the matrix begins where a page does
+constexpr std::string_view kEnding = ".setup";
+
+/// The header as it lies in the file, native byte order: the processor is part of the key. The size of the
+/// file tells the number of columns.
+struct Header {
+  std::array<char, 16> magic{"palpate setup 3"};  // with the version of the layout
+  std::uint64_t rows = 0;
+  double seconds = 0;
+  Digest checksum{};  // of the key, of all before, and of the matrix
+};
+static_assert(sizeof(Header) <= kPage && std::is_trivially_copyable_v<Header>);
+
+Digest checksum_of(const Header& header, const Digest& key, const double* matrix, std::size_t numbers) {
+  Fingerprint all(Fingerprint::For::kAnyBuild);
+  all.add(std::span<const std::uint64_t>(key));
+  all.add(std::as_bytes(std::span(&header, 1)).first(offsetof(Header, checksum)));
+  all.add(std::span(matrix, numbers));
+  return all.digest();
+}
+
+const Header& header_at(const void* begin) {
+  return *static_cast<const Header*>(begin);
+}
+
+/// True of KEY.setup, and of the longer name that it has while it is written: the folder may belong to
+/// anybody.
+bool is_entry_name(std::string_view name) {
+  constexpr std::size_t kDigits = 32;
+  return name.find_first_not_of("0123456789abcdef") == kDigits && name.substr(kDigits).starts_with(kEnding);
 }
 
 }  // namespace
 
-SetupCache::SetupCache(fs::path folder, double most_bytes)
-    : folder_(std::move(folder)), most_bytes_(most_bytes) {}
+void MappedMatrix::Unmap::operator()(void* begin) const noexcept {
+  ::munmap(begin, bytes);
+}
 
-std::optional<fs::path> SetupCache::usual_folder() {
-  const char *const cache = std::getenv("XDG_CACHE_HOME"), *const home = std::getenv("HOME");
-  if (cache != nullptr && fs::path(cache).is_absolute()) return fs::path(cache) / "palpate";
-  if (home != nullptr && fs::path(home).is_absolute()) return fs::path(home) / ".cache" / "palpate";
-  return {};
+Eigen::Map<Eigen::MatrixXd> MappedMatrix::matrix() const {
+  const std::size_t numbers = (start_.get_deleter().bytes - kPage) / sizeof(double);
+  const auto rows = static_cast<Eigen::Index>(header_at(start_.get()).rows);
+  void* const first = static_cast<char*>(start_.get()) + kPage;
+  return {static_cast<double*>(first), rows, static_cast<Eigen::Index>(numbers) / rows};
+}
+
+std::string MappedMatrix::note_of_saved(std::string_view source) const {
+  return fmt::format("from {}, which saved {:.1f} s", source, header_at(start_.get()).seconds);
+}
+
+fs::path entry_file(const fs::path& folder, const Digest& key) {
+  return folder / (to_text(key) + std::string(kEnding));
+}
+
+void write_entry(const fs::path& folder, const Digest& key, double seconds,
+                 const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
+  assert(matrix.outerStride() == matrix.rows());
+  const auto numbers = static_cast<std::size_t>(matrix.size());
+  Header header{.rows = static_cast<std::uint64_t>(matrix.rows()), .seconds = seconds};
+  header.checksum = checksum_of(header, key, matrix.data(), numbers);
+  const fs::path file = entry_file(folder, key),
+                 part = fmt::format("{}.{:08x}", file.string(), std::random_device()());
+  std::ofstream out(part, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(&header), sizeof(header));
+  out.seekp(kPage);
+  out.write(reinterpret_cast<const char*>(matrix.data()),
+            static_cast<std::streamsize>(numbers * sizeof(double)));
+  out.close();
+  std::error_code failed, ignored;
+  if (!out) failed = {errno, std::generic_category()};
+  if (!failed) fs::rename(part, file, failed);
+  if (!failed) return;
+  fs::remove(part, ignored);
+  fail("{}: cannot be written: {}", file.string(), failed.message());
+}
+
+std::optional<MappedMatrix> map_entry(const fs::path& name, const Digest& key) {
+  std::error_code failed;
+  const std::size_t bytes = fs::file_size(name, failed);
+  if (failed == std::errc::no_such_file_or_directory || failed == std::errc::not_a_directory) return {};
+  if (!failed && bytes < kPage) fail("{}: is cut off", name.string());
+  const int file = ::open(name.c_str(), O_RDONLY | O_CLOEXEC);
+  void* const begin =
+      file < 0 ? MAP_FAILED
+               : ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_POPULATE, file, 0);
+  if (begin == MAP_FAILED) failed = {errno, std::generic_category()};
+  if (file >= 0) ::close(file);
+  if (failed) fail("{}: cannot be read: {}", name.string(), failed.message());
+  MappedMatrix mapped(begin, bytes);
+  const Header& header = header_at(begin);
+  if (header.magic != Header().magic) fail("{}: is no entry of this version", name.string());
+  const std::size_t numbers = (bytes - kPage) / sizeof(double);
+  if (header.rows == 0 || header.rows > numbers || numbers % header.rows != 0 ||
+      bytes % sizeof(double) != 0 ||
+      checksum_of(header, key, mapped.matrix().data(), numbers) != header.checksum)
+    fail("{}: is spoilt, cut off or the entry of another scene", name.string());
+  return mapped;
 }
 
 std::optional<MappedMatrix> SetupCache::find(const Digest& key) const {
   const fs::path file = entry_file(folder_, key);
-  std::error_code failed;
-  if (!fs::exists(file, failed)) return {};
   try {
-    MappedMatrix found = map_entry(file, key);
-    fs::last_write_time(file, fs::file_time_type::clock::now(), failed);  // it is in use
-    return found;
+    return map_entry(file, key);
   } catch (const Error& error) {
-    const bool spoilt = error.exit_code() == static_cast<int>(Error::Kind::kInput);
-    log::warning("set-up cache: {}; it is {}made again", error.what(), spoilt ? "removed and " : "");
-    if (spoilt) fs::remove(file, failed);
+    log::warning("set-up cache: {}; it is removed and made again", error.what());
+    std::error_code ignored;
+    fs::remove(file, ignored);
     return {};
   }
 }
 
-void SetupCache::keep(const EntryHeader& header, const Eigen::Ref<const Eigen::MatrixXd>& matrix) const {
+void SetupCache::keep(const Digest& key, double seconds,
+                      const Eigen::Ref<const Eigen::MatrixXd>& matrix) const {
+  const double bytes = static_cast<double>(kPage + static_cast<std::size_t>(matrix.size()) * sizeof(double));
+  if (matrix.size() == 0 || bytes > most_bytes_) return;
   try {
-    if (static_cast<double>(matrix.size()) * sizeof(double) > most_bytes_) return;
     fs::create_directories(folder_);
-    write_entry(folder_, header, matrix);
-    make_room(header.key);
+    make_room(bytes);
+    write_entry(folder_, key, seconds, matrix);
   } catch (const std::exception& error) {
-    log::warning("set-up cache: nothing kept: {}; --cache names another folder, --no-cache none",
-                 error.what());
+    if (!has_warned_)
+      log::warning("set-up cache: nothing kept: {}; --cache names another folder, --no-cache none",
+                   error.what());
+    has_warned_ = true;
   }
 }
 
-/// The entries not used for longest go until what is left fits; the newest stays.
-void SetupCache::make_room(const Digest& newest) const {
-  double stored = 0, removed = 0;
-  int count = 0;
-  for (const Entry& entry : list()) {
-    stored += entry.bytes;
-    if (stored <= most_bytes_ || entry.file == entry_file(folder_, newest)) continue;
-    std::error_code failed;
-    if (!fs::remove(entry.file, failed)) continue;
-    stored -= entry.bytes;
-    removed += entry.bytes;
-    ++count;
+/// Removes all entries, and what interrupted writers left, if `bytes` more are too many.
+void SetupCache::make_room(double bytes) const {
+  std::vector<fs::path> files;
+  double stored = 0;
+  std::error_code gone;  // another program removes or renames a file at the same time
+  for (const fs::directory_entry& file : fs::directory_iterator(folder_)) {
+    if (!is_entry_name(file.path().filename().native())) continue;
+    const auto size = static_cast<double>(file.file_size(gone));
+    if (gone) continue;
+    stored += size;
+    files.push_back(file.path());
   }
-  if (count > 0)
-    log::info("set-up cache: {} of the oldest entries removed, {}: it holds {} at most", count,
-              bytes_text(removed), bytes_text(most_bytes_));
-}
-
-std::vector<SetupCache::Entry> SetupCache::list() const {
-  std::vector<Entry> entries;
-  for (const fs::path& file : entries_in(folder_)) {
-    std::error_code failed;
-    Entry entry{file, static_cast<double>(fs::file_size(file, failed)), fs::last_write_time(file, failed),
-                read_header(file)};
-    if (!failed) entries.push_back(std::move(entry));
-  }
-  std::ranges::sort(entries, [](const Entry& a, const Entry& b) {
-    return a.used != b.used ? a.used > b.used : a.file < b.file;
-  });
-  return entries;
-}
-
-std::pair<int, double> SetupCache::clear() const {
-  std::pair<int, double> removed{remove_parts(folder_, std::chrono::seconds(0)), 0};
-  for (const Entry& entry : list()) {
-    std::error_code failed;
-    if (!fs::remove(entry.file, failed)) continue;
-    ++removed.first;
-    removed.second += entry.bytes;
-  }
-  return removed;
+  if (stored + bytes <= most_bytes_) return;
+  for (const fs::path& file : files) fs::remove(file, gone);
+  log::info("set-up cache: removed all {} in {}, which {} more would bring past {}", bytes_text(stored),
+            folder_.string(), bytes_text(bytes), bytes_text(most_bytes_));
 }
 
 }  // namespace palpate::sim

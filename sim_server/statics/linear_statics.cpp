@@ -44,9 +44,10 @@ class StoredMatrices {
     return of_any_build() ? inputs_.condensed->find(key, what, inputs_.scene.source)
                           : inputs_.cache->find(key);
   }
-  void keep(const EntryHeader& header, const Eigen::Ref<const Eigen::MatrixXd>& matrix) const {
-    if (of_any_build()) return inputs_.condensed->keep(header, matrix);
-    inputs_.cache->keep(header, matrix);
+  void keep(const Digest& key, Time begin, const Eigen::Ref<const Eigen::MatrixXd>& matrix) const {
+    const double seconds = to_seconds(now() - begin);
+    if (of_any_build()) return inputs_.condensed->keep(key, seconds, matrix);
+    inputs_.cache->keep(key, seconds, matrix);
   }
 
  private:
@@ -132,9 +133,9 @@ const FactoredMatrix& LinearStatics::factor(FactorUse use) const {
   if (inputs_.condensed == nullptr) {
     factor_ = std::make_unique<SparseCholesky>(stiffness.lower(), where);
     factor_use_ = FactorUse::kInverseAndSolve;
-  } else if (inputs_.condensed->makes()) {
-    factor_ =
-        inputs_.condensed->factor(stiffness.lower(), rows_of(compliant_vertices(inputs_).order), use, where);
+  } else if (inputs_.condensed->make_factor()) {
+    factor_ = inputs_.condensed->make_factor()(stiffness.lower(), rows_of(compliant_vertices(inputs_).order),
+                                               use, where);
     factor_use_ = use;
   } else {
     fail("--condensed: {} needs a factor of its stiffness besides, as its supports move; leave it out",
@@ -174,14 +175,13 @@ VibrationModes LinearStatics::modes(int count, const std::string& where,
   if (const auto found = stored.find(key, fmt::format("{} modes of vibration", count))) {
     const auto matrix = found->matrix();  // the frequencies above the shapes
     if (matrix.rows() == dofs.count + 1 && matrix.cols() == count)
-      return {matrix.row(0).transpose(), matrix.bottomRows(dofs.count), note_of_saved(*found, stored.name())};
+      return {matrix.row(0).transpose(), matrix.bottomRows(dofs.count), found->note_of_saved(stored.name())};
   }
   const Time begin = now();
   VibrationModes found = find();
   Eigen::MatrixXd matrix(dofs.count + 1, count);
   matrix << found.frequencies.transpose(), found.shapes;
-  const std::string what = fmt::format("{} modes, {}", count, inputs_.scene.mesh_file.filename().string());
-  stored.keep({.key = key, .seconds = to_seconds(now() - begin), .what = what}, matrix);
+  stored.keep(key, begin, matrix);
   return found;
 }
 
@@ -194,11 +194,8 @@ void LinearStatics::fill(SurfaceCompliance& compliance) const {
   if (auto found = stored.find(key, what); found && compliance.take(std::move(*found), stored.name())) return;
   const Time begin = now();
   compliance.compute(factor(FactorUse::kInverse), rows, inputs_.progress);
-  const EntryHeader header{.key = key,
-                           .seconds = to_seconds(now() - begin),
-                           .what = what + ", " + inputs_.scene.mesh_file.filename().string()};
   try {
-    compliance.pass_to([&](const auto& matrix) { stored.keep(header, matrix); });
+    compliance.pass_to([&](const auto& matrix) { stored.keep(key, begin, matrix); });
     compliance.was_stored_in(stored.name());
   } catch (const Error& error) {
     if (stored.of_any_build()) throw;

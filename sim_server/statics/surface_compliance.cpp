@@ -106,13 +106,13 @@ bool SurfaceCompliance::take(MappedMatrix&& stored, std::string_view source) {
   const auto matrix = stored.matrix();
   if (tiles_) {
     if (!tiles_->unpack(matrix)) return false;
-    note_ = note_of_saved(stored, source);
+    note_ = stored.note_of_saved(source);
     return true;
   }
   if (matrix.rows() != size() || matrix.cols() != size()) return false;
   new (&compliance_) Eigen::Map<Eigen::MatrixXd>(const_cast<double*>(matrix.data()), size(), size());
   stored_ = std::move(stored);
-  note_ = note_of_saved(*stored_, source);
+  note_ = stored_->note_of_saved(source);
   return true;
 }
 

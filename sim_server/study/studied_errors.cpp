@@ -1,6 +1,5 @@
 #include "sim_server/study/studied_errors.h"
 
-#include <fmt/core.h>
 #include <fstream>
 #include <iterator>
 
@@ -28,9 +27,7 @@ Digest key_of_study(const Scene& scene) {
 void keep_studied(const SetupCache& cache, const Scene& scene, const DiscretisationErrors& errors,
                   double seconds) {
   const Eigen::RowVector2d percent(errors.mesh.percent, errors.time_step.percent);
-  const std::string what =
-      fmt::format("study of {}", std::filesystem::path(scene.source).filename().string());
-  cache.keep({.key = key_of_study(scene), .seconds = seconds, .what = what}, percent);
+  cache.keep(key_of_study(scene), seconds, percent);
 }
 
 std::optional<DiscretisationErrors> find_studied(const SetupCache& cache, const Scene& scene) {

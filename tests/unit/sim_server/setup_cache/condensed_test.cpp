@@ -137,21 +137,6 @@ TEST_CASE(
                       Contains(file.filename().string()) && Contains("condense the scene again"));
 }
 
-TEST_CASE("condensed: what an interrupted writer left goes when something is kept, once it is old") {
-  namespace fs = std::filesystem;
-  const test::TemporaryFolder folder;
-  const fs::path old = folder.path() / "0123456789abcdef0123456789abcdef.setup.abcdef.part",
-                 live = folder.path() / "0123456789abcdef0123456789abcdef.setup.live00.part";
-  for (const fs::path& part : {old, live}) std::ofstream(part) << "half";
-  fs::last_write_time(old, fs::file_time_type::clock::now() - std::chrono::hours(2));
-  int made = 0;
-  const Condensed making(folder.path(), built_in(made));
-  const Simulation one(test::deep_block_scene("quasi_static"), test::deep_block(kCells), kSilent, nullptr,
-                       &making);
-  CHECK_FALSE(fs::exists(old));
-  CHECK(fs::exists(live));
-}
-
 TEST_CASE("condensed: a folder that is not there, or that nothing can be kept in, is refused at once") {
   const test::TemporaryFolder folder;
   int made = 0;

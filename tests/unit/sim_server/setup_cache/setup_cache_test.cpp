@@ -1,9 +1,8 @@
 #include "sim_server/setup_cache/setup_cache.h"
 
-#include <chrono>
+#include <atomic>
 #include <fstream>
-#include <sys/stat.h>
-#include <unistd.h>
+#include <thread>
 
 #include "common/error.h"
 #include "sim_server/scene_file/read_scene.h"
@@ -44,20 +43,24 @@ void write_bytes(const fs::path& file, const std::string& bytes) {
   std::ofstream(file, std::ios::binary | std::ios::trunc) << bytes;
 }
 
+std::ptrdiff_t files_in(const fs::path& folder) {
+  const fs::directory_iterator files(folder);
+  return std::distance(begin(files), end(files));
+}
+
 }  // namespace
 
 TEST_CASE("setup cache: what is kept is found, bit by bit, and stays as it is when a finder writes on it") {
   const test::TemporaryFolder folder;
   const SetupCache cache(folder.path() / "not" / "there");
   CHECK_FALSE(cache.find(key_of(1)));
-  cache.keep({.key = key_of(1), .seconds = 2.5, .what = "compliance of 5 nodes"}, numbers(15));
+  cache.keep(key_of(1), 2.5, numbers(15));
   CHECK_FALSE(cache.find(key_of(2)));
   for (int again = 0; again < 2; ++again) {
     const auto found = cache.find(key_of(1));
     REQUIRE(found);
     CHECK(found->matrix() == numbers(15));
-    CHECK(found->header().seconds == 2.5);
-    CHECK(found->header().what == "compliance of 5 nodes");
+    CHECK(found->note_of_saved("there") == "from there, which saved 2.5 s");
     found->matrix().setZero();  // copy-on-write
   }
 }
@@ -66,7 +69,7 @@ TEST_CASE("setup cache: a matrix of more than a million rows is found, as of the
   const test::TemporaryFolder folder;
   const SetupCache cache(folder.path());
   const Eigen::MatrixXd tall = Eigen::VectorXd::LinSpaced(1'300'000, 0, 1);
-  cache.keep({.key = key_of(1), .what = "modes"}, tall);
+  cache.keep(key_of(1), 1, tall);
   const auto found = cache.find(key_of(1));
   REQUIRE(found);
   CHECK(found->matrix() == tall);
@@ -75,12 +78,12 @@ TEST_CASE("setup cache: a matrix of more than a million rows is found, as of the
 TEST_CASE("setup cache: an entry with any byte of header or numbers changed, or cut, is never taken") {
   const test::TemporaryFolder folder;
   const SetupCache cache(folder.path());
-  const auto keep = [&] { cache.keep({.key = key_of(7), .seconds = 1, .what = "seven"}, numbers(12)); };
+  const auto keep = [&] { cache.keep(key_of(7), 1, numbers(12)); };
   keep();
   const fs::path file = file_of(folder.path(), 7);
   const std::string entire = bytes_of(file);
   REQUIRE(entire.size() == 4096 + 12 * 12 * sizeof(double));
-  const std::size_t header = 288;  // bytes that mean something; the rest of the page is padding
+  const std::size_t header = 48;  // bytes that mean something; the rest of the page is padding
   for (std::size_t at = 0; at < entire.size(); at += at < header ? 1 : at < 4096 ? 4096 - header : 7) {
     if (at >= header && at < 4096) continue;
     CAPTURE(at);
@@ -103,47 +106,55 @@ TEST_CASE("setup cache: an entry with any byte of header or numbers changed, or 
   CHECK_FALSE(cache.find(key_of(8)));
 }
 
-TEST_CASE("setup cache: beyond its bound the entries not used for longest go, the newest stays") {
+TEST_CASE("setup cache: an entry that would pass the bound removes all others, and no file of anybody else") {
   const test::TemporaryFolder folder;
-  const double entry = 4096 + 8 * 20 * 20;
-  const SetupCache cache(folder.path(), 2.5 * entry);
-  const auto now = fs::file_time_type::clock::now();
-  for (std::uint64_t k = 1; k <= 2; ++k) {
-    cache.keep({.key = key_of(k), .what = ""}, numbers(20));
-    fs::last_write_time(file_of(folder.path(), k), now - std::chrono::hours(10 - k));
-  }
-  REQUIRE(cache.find(key_of(1)));  // so 2 is the oldest
-  cache.keep({.key = key_of(3), .what = ""}, numbers(20));
-  CHECK(cache.find(key_of(1)));
+  const auto keep = [&](std::uint64_t k, double entries) {
+    SetupCache(folder.path(), entries * (4096 + 8 * 20 * 20)).keep(key_of(k), 1, numbers(20));
+  };
+  const std::vector<std::string> others{"notes.txt", "film.setup", "0123456789abcdef0123456789abcdeF.setup",
+                                        "0123456789abcdef0123456789abcdef.txt"};
+  for (const std::string& other : others) write_bytes(folder.path() / other, "mine");
+  const fs::path half = file_of(folder.path(), 9).string() + ".0123abcd";  // of a writer that was interrupted
+  write_bytes(half, "half");
+  for (const std::uint64_t k : {1, 2}) keep(k, 2.5);
+  CHECK(fs::exists(half));
+  keep(3, 2.5);
+  const SetupCache cache(folder.path());
+  CHECK_FALSE(cache.find(key_of(1)));
   CHECK_FALSE(cache.find(key_of(2)));
   CHECK(cache.find(key_of(3)));
-  CHECK(cache.list().size() == 2);
-  const auto [files, bytes] = cache.clear();
-  CHECK(files == 2);
-  CHECK(bytes == 2 * entry);
-  CHECK(cache.list().empty());
-}
-
-TEST_CASE("setup cache: clear removes what it wrote, and nothing else") {
-  const test::TemporaryFolder folder;
-  const SetupCache cache(folder.path());
-  cache.keep({.key = key_of(1), .what = ""}, numbers(3));
-  const std::vector<std::string> others{"notes.txt", "film.mkv.part", "windows.setup",
-                                        "0123456789abcdef0123456789abcdeF.setup", "a.setup.abcdef.part"};
-  for (const std::string& other : others) write_bytes(folder.path() / other, "mine");
-  write_bytes(folder.path() / "0123456789abcdef0123456789abcdef.setup.abcd77.part",
-              "half");  // of a writer that was interrupted
-  CHECK(cache.clear().first == 2);
+  CHECK_FALSE(fs::exists(half));
+  keep(4, 0.5);  // too large even alone
+  CHECK_FALSE(cache.find(key_of(4)));
+  CHECK(cache.find(key_of(3)));
   for (const std::string& other : others) CHECK(bytes_of(folder.path() / other) == "mine");
 }
 
-TEST_CASE("setup cache: a folder that cannot be written to costs a warning, no more") {
+TEST_CASE("setup cache: writers and finders at once find nothing, or all of an entry") {
+  const test::TemporaryFolder folder;
+  std::atomic<int> taken = 0, wrong = 0;
+  {
+    std::vector<std::jthread> programs;
+    for (int i = 0; i < 4; ++i)
+      programs.emplace_back([&] {
+        const SetupCache cache(folder.path(), 3 * 8 * 50 * 50);  // holds the first three of four entries
+        for (int round = 0; round < 50; ++round) {
+          const auto k = static_cast<std::uint64_t>(round % 4);
+          if (const auto found = cache.find(key_of(k))) ++(found->matrix() == numbers(50) ? taken : wrong);
+          cache.keep(key_of(k), 1, numbers(50));
+        }
+      });
+  }
+  CHECK(wrong == 0);
+  CHECK(taken > 0);
+}
+
+TEST_CASE("setup cache: a folder that cannot be written to is one in which nothing is found") {
   const test::TemporaryFolder folder;
   write_bytes(folder.path() / "file", "");
   const SetupCache cache(folder.path() / "file" / "folder");
-  cache.keep({.key = key_of(1), .what = ""}, numbers(3));
+  cache.keep(key_of(1), 1, numbers(3));
   CHECK_FALSE(cache.find(key_of(1)));
-  CHECK(cache.list().empty());
 }
 
 TEST_CASE("setup cache: a fingerprint tells spans, their ends and their order apart") {
@@ -175,9 +186,9 @@ TEST_CASE(
         return simulation.state_hash();
       };
       Simulation plain(scene), first(scene, kSilent, &cache);
-      const std::size_t entries = cache.list().size();
+      const std::ptrdiff_t entries = files_in(folder.path());
       Simulation second(scene, kSilent, &cache);
-      CHECK(cache.list().size() == entries);
+      CHECK(files_in(folder.path()) == entries);
       const auto parts = second.memory();
       CHECK(std::ranges::any_of(parts, [](const MemoryPart& part) {
         return part.detail.find("from the set-up cache") != std::string::npos;
@@ -188,7 +199,7 @@ TEST_CASE(
       Scene softer = scene;
       softer.material->young_modulus *= 0.999;
       Simulation third(softer, kSilent, &cache);
-      CHECK(cache.list().size() == 2 * entries);
+      CHECK(files_in(folder.path()) == 2 * entries);
     }
   }
 }
