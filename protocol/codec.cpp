@@ -4,7 +4,6 @@
 #include <cassert>
 
 #include "common/contact/tool.h"
-#include "protocol/surface_pages.h"
 #include "protocol/wire.h"
 
 namespace palpate::protocol {
@@ -12,87 +11,77 @@ namespace {
 
 constexpr std::array<std::uint8_t, 4> kMagic{'P', 'L', 'P', 'T'};
 constexpr std::array<std::uint8_t, 2> kReserved{};
-constexpr float kMaxAmplitude = 1e6F;                     // of a mode, m sqrt(kg), and of its rate
-constexpr float kMaxRelaxation = 1e6F;                    // s
-constexpr float kMaxPercent = 1e6F;                       // of an error of a force
-constexpr std::int64_t kMaxLead = 10'000'000'000;         // ns
-constexpr std::int64_t kMaxTime = std::int64_t{1} << 61;  // ns, 73 years: times of any two can be subtracted
 
-bool small(const Vec3& v) noexcept {
-  return v.cwiseAbs().maxCoeff() <= kMaxMagnitude;
-}
-bool is_time(std::int64_t t_ns) noexcept {
-  return t_ns >= -kMaxTime && t_ns <= kMaxTime;
-}
-bool valid(const Hello&) noexcept {
-  return true;
-}
-bool valid(const Challenge&) noexcept {
-  return true;
-}
-bool valid(const Welcome& m) noexcept {
-  return m.tool < kMaxTools && m.rate_hz >= 0 && m.rate_hz <= 1e6 && m.tool_radius > 0 && m.tool_radius <= 1;
-}
-bool valid(const Refuse& m) noexcept {
-  return m.reason >= RefuseReason::kNoFreeTool && m.reason <= RefuseReason::kVersion;
-}
-bool valid(const Bye&) noexcept {
-  return true;
-}
-bool valid(const ToolState& m) noexcept {
-  const auto& q = m.q_W;
-  const double norm = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-  return m.tool < kMaxTools && m.tick > 0 && small(m.p_W) && small(m.v_W) &&
-         std::abs(norm - 1) < kUnitTolerance && is_time(m.t_ns) && m.lead_ns >= 0 && m.lead_ns <= kMaxLead;
-}
-bool valid(const Linearisation& m) noexcept {
-  const double size = m.normal_W.squaredNorm();
-  return m.tangent.cwiseAbs().maxCoeff() <= kMaxMagnitude &&
-         (size == 0 || std::abs(size - 1) < kUnitTolerance) && m.gap >= 0 && m.gap <= kMaxMagnitude;
-}
-/// Says nothing of a radius of 0 where there is no surface.
-bool valid(const SurfaceState& m) noexcept {
-  return m.vertices <= kMostSurfaceVertices && m.triangles <= 2 * kMostSurfaceVertices &&
-         m.tool_radius <= 1 && (m.tool_radius > 0 || (m.version == 0 && m.tool_radius == 0)) &&
-         m.tool_friction >= 0 && m.tool_friction <= 10 && m.tool_compliance >= 0 &&
-         m.tool_compliance <= 1e6 && small(m.shift_W);
-}
-bool valid(const DiscretisationError& m) noexcept {
-  return m.source <= ErrorSource::kNone && m.percent >= 0 && m.percent <= kMaxPercent;
-}
-bool valid(const OtherTools& m) noexcept {
-  return small(m.v_W) && m.compliance.cwiseAbs().maxCoeff() <= 1e6;
-}
-bool valid(const ModalState& m) noexcept {
-  const auto bounded = [](float x) { return std::abs(x) <= kMaxAmplitude; };
-  return m.count <= kMaxPublishedModes && std::ranges::all_of(m.q, bounded) &&
-         std::ranges::all_of(m.v, bounded);
-}
-bool valid(const ForceSample& m) noexcept {
-  return m.tool < kMaxTools && m.number > 0 && is_time(m.tool_t_ns) && small(m.p_W) && small(m.f_W) &&
-         small(m.torque_W) && small(m.surface_v_W) && valid(m.at_tool) && small(m.ahead_p_W) &&
-         small(m.ahead_f_W) && valid(m.ahead) && valid(m.surface) && valid(m.errors.mesh) &&
-         valid(m.errors.time_step) && valid(m.others) && valid(m.modes) && small(m.mean_f_W) &&
-         valid(m.relaxed) && valid(m.modal_loads);
-}
-bool valid(const SurfacePage& m) noexcept {
-  return m.tool < kMaxTools && m.page != ToolState::kNoPage &&
-         std::ranges::all_of(m.values, [](float x) { return std::abs(x) <= 1e9f; });
+static_assert(limits::kToolNumber.most + 1 == kMaxTools);
+static_assert(Telemetry::kColumn.most + 1 == Telemetry::kMostLaws);
+static_assert(limits::kPageNumber.most + 1 == ToolState::kNoPage);
+
+/// Visits a message: true if each of its fields is within its limits.
+class LimitCheck {
+ public:
+  bool is_passed() const noexcept { return passed_; }
+
+  template <class T>
+  requires std::is_arithmetic_v<T>
+  void operator()(T x, const Range& range) noexcept {
+    const auto value = static_cast<double>(x);
+    require(value >= range.least && value <= range.most && !(range.is_open && value == range.least));
+  }
+  template <class T>
+  requires std::is_arithmetic_v<T>
+  void operator()(T x) noexcept {
+    if constexpr (std::is_floating_point_v<T>) (*this)(x, limits::kAnyReal);
+  }
+  void operator()(const Telemetry::Name& name) noexcept {
+    require(std::ranges::all_of(name, [](std::uint8_t c) { return c == 0 || (c >= 32 && c < 127); }));
+  }
+  void operator()(RefuseReason reason) noexcept {
+    require(reason >= RefuseReason::kNoFreeTool && reason <= RefuseReason::kVersion);
+  }
+  void operator()(ErrorSource source) noexcept { require(source <= ErrorSource::kNone); }
+  template <class Vector>
+  void operator()(const Vector& vector, const UnitLength& length) noexcept {
+    double square = 0;
+    for (const double x : vector) square += x * x;
+    require(std::abs(square - 1) < length.tolerance || (length.or_zero && square == 0));
+  }
+  template <class T, std::size_t N, class... Limits>
+  requires(...&& std::is_same_v<Limits, Range>) void operator()(const std::array<T, N>& values,
+                                                                const Limits&... limits) noexcept {
+    for (const T& value : values) (*this)(value, limits...);
+  }
+  template <class Derived, class... Limits>
+  requires(...&& std::is_same_v<Limits, Range>) void operator()(const Eigen::DenseBase<Derived>& values,
+                                                                const Limits&... limits) noexcept {
+    for (const double value : values.reshaped()) (*this)(value, limits...);
+  }
+
+ private:
+  void require(bool is_met) noexcept { passed_ = passed_ && is_met; }
+
+  bool passed_ = true;
+};
+
+template <class M>
+bool is_within_limits(const M& m) noexcept {
+  LimitCheck check;
+  M::fields(m, check);
+  return check.is_passed();
 }
 
-bool valid(const Telemetry& m) noexcept {
-  const auto ascii = [](const Telemetry::Name& name) {
-    return std::ranges::all_of(name, [](std::uint8_t c) { return c == 0 || (c >= 32 && c < 127); });
-  };
-  const auto force = [](float f) { return std::abs(f) <= 1e9F; };
-  return m.tool < kMaxTools && small(m.p_W) && small(m.f_W) && m.passivity_gain >= 0 &&
-         m.passivity_gain <= 1 && ascii(m.device) && ascii(m.rendered_law) && ascii(m.name) &&
-         m.named < Telemetry::kMostLaws && m.error_percent <= kMaxPercent && m.laws <= Telemetry::kMostLaws &&
-         m.count <= Telemetry::kMostTicks && std::ranges::all_of(m.rendered, force) &&
-         std::ranges::all_of(m.by_law, force);
+/// Returns whether the fields of a message that are each within their limits agree with one another.
+template <class M>
+bool is_consistent(const M&) noexcept {
+  return true;
 }
-bool valid(const Pointer& m) noexcept {
-  return m.tool < kMaxTools && m.number > 0 && small(m.p_W);
+bool is_consistent(const RelaxedState& m) noexcept {
+  double fractions = 0;
+  for (std::size_t j = 0; j < m.terms; ++j) fractions += static_cast<double>(m.fraction[j]);
+  return m.count * m.terms <= RelaxedState::kMostAmplitudes && m.first + m.count <= kMaxPublishedModes &&
+         m.vertices * m.terms <= RelaxedState::kMostForces && fractions < 1;
+}
+bool is_consistent(const ForceSample& m) noexcept {
+  return (m.surface.tool_radius > 0 || m.surface.version == 0) && is_consistent(m.relaxed);
 }
 
 template <class M>
@@ -102,7 +91,7 @@ Verdict read_as(std::span<const std::byte> payload, Message& out) noexcept {
   M::fields(message, reader);
   if (!reader.complete()) return Verdict::kLength;
   if (!reader.finite()) return Verdict::kNotFinite;
-  if (!valid(message)) return Verdict::kValue;
+  if (!is_within_limits(message) || !is_consistent(message)) return Verdict::kValue;
   out = message;
   return Verdict::kAccepted;
 }
@@ -138,24 +127,11 @@ Verdict read_payload(MessageType type, std::span<const std::byte> payload, Messa
 }  // namespace
 
 bool valid(const ModalLoads& m) noexcept {
-  return m.count <= kMaxPublishedModes &&
-         std::ranges::all_of(m.load, [](float x) { return std::abs(x) <= kMaxAmplitude; });
+  return is_within_limits(m);
 }
 
 bool valid(const RelaxedState& m) noexcept {
-  const auto bounded = [](float x) { return std::abs(x) <= kMaxAmplitude; };
-  if (m.terms > kMostRelaxations || m.count * m.terms > RelaxedState::kMostAmplitudes ||
-      m.first + m.count > kMaxPublishedModes || m.vertices * m.terms > RelaxedState::kMostForces ||
-      m.vertices > RelaxedState::kMostForces)
-    return false;
-  float fractions = 0;
-  for (std::size_t j = 0; j < m.terms; ++j) {
-    fractions += m.fraction[j];
-    if (!(m.fraction[j] >= 0 && m.time[j] > 0 && m.time[j] <= kMaxRelaxation)) return false;
-  }
-  return fractions < 1 && std::ranges::all_of(m.z, bounded) &&
-         std::ranges::all_of(
-             m.vertex, [&](const RelaxedState::Vertex& v) { return std::ranges::all_of(v.psi, bounded); });
+  return is_within_limits(m) && is_consistent(m);
 }
 
 std::size_t encode(const Header& header, const Message& message, std::span<std::byte> out) noexcept {

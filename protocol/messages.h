@@ -1,6 +1,7 @@
 #pragma once
 /// Messages of the protocol. Byte layout and meaning: protocol/README.md. Each message lists its fields once,
-/// in wire order; writer and reader both walk that list.
+/// in wire order, with the limits of their values: writer, reader and check of limits walk that list, and
+/// scripts/wireshark/make_fields prints it for the dissector.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -33,11 +34,44 @@ enum class RefuseReason : std::uint8_t {
   kVersion = 3,         ///< the server speaks only the version of this datagram
 };
 
-/// Largest position, speed, force or tangent on the wire, m, m/s, N, N/m: what is larger is a bug or an
-/// attack.
+/// Limits of a number on the wire: what is outside is a bug or an attack.
+struct Range {
+  double least, most;
+  bool is_open = false;  ///< `least` itself is outside
+};
+/// Limits of a vector or quaternion on the wire: its length is 1.
+struct UnitLength {
+  double tolerance;  ///< of the square of the length
+  bool or_zero;      ///< a length of 0 says that there is none
+};
+
+/// Largest position, speed, force or tangent on the wire, m, m/s, N, N/m.
 constexpr double kMaxMagnitude = 1e9;
-/// Largest difference from 1 of the square of a unit vector or quaternion on the wire.
-constexpr double kUnitTolerance = 1e-6;
+/// Each client reserves memory for a surface model of this size (`SurfaceModel`, 11 MB).
+constexpr std::uint32_t kMostSurfaceVertices = 20'000;
+
+namespace limits {
+constexpr Range kAnyReal{-kMaxMagnitude, kMaxMagnitude};  ///< of a real number without other limits
+constexpr Range kToolNumber{0, 7};
+constexpr Range kFromOne{1, 2e19};                                 ///< any integer but 0
+constexpr Range kTime{-2305843009213693952, 2305843009213693952};  ///< ns, 73 years: two can be subtracted
+constexpr Range kRate{0, 1e6};                                     ///< Hz
+constexpr Range kLead{0, 1e10};                                    ///< ns
+constexpr Range kToolRadius{0, 1, true}, kToolRadiusOrNone{0, 1};  ///< m
+constexpr Range kFriction{0, 10};
+constexpr Range kToolCompliance{0, 1e6}, kCompliance{-1e6, 1e6};  ///< m/N
+constexpr Range kGap{0, kMaxMagnitude};                           ///< m
+constexpr Range kAmplitude{-1e6, 1e6};          ///< of a mode, m sqrt(kg), and of its rate, load and memory
+constexpr Range kRelaxationTime{0, 1e6, true};  ///< s
+constexpr Range kPercent{0, 1e6};               ///< of an error of a force
+constexpr Range kPercentOrUnknown{-4e38, 1e6};  ///< below 0: not known
+constexpr Range kFraction{0, 1};
+constexpr Range kModes{0, kMaxPublishedModes};
+constexpr Range kRelaxations{0, kMostRelaxations};
+constexpr Range kVertices{0, kMostSurfaceVertices}, kTriangles{0, 2 * kMostSurfaceVertices};
+constexpr Range kPageNumber{0, 4294967294};  ///< any but `ToolState::kNoPage`
+constexpr UnitLength kUnitVector{1e-6, false}, kUnitVectorOrZero{1e-6, true};
+}  // namespace limits
 
 /// Drawn at random, once; on the wire 16 bytes.
 using Nonce = std::array<std::uint64_t, 2>;
@@ -76,7 +110,8 @@ struct Welcome {
   double tool_radius = 0;  ///< m
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
-    v(m.nonce), v(m.attempt), v(m.server), v(m.tool), v(m.rate_hz), v(m.tool_radius);
+    v(m.nonce), v(m.attempt), v(m.server), v(m.tool, limits::kToolNumber), v(m.rate_hz, limits::kRate),
+        v(m.tool_radius, limits::kToolRadius);
   }
 };
 
@@ -127,9 +162,9 @@ struct ToolState {
   std::array<std::uint32_t, 8> pages = {};  ///< which of its pages; kNoPage: none
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
-    v(m.tool), v(m.tick), v(m.newest_sample), v(m.t_ns), v(m.p_W), v(m.v_W), v(m.q_W), v(m.buttons),
-        v(m.flags);
-    if ((m.flags & kRequestsAhead) != 0) v(m.lead_ns);
+    v(m.tool, limits::kToolNumber), v(m.tick, limits::kFromOne), v(m.newest_sample), v(m.t_ns, limits::kTime),
+        v(m.p_W), v(m.v_W), v(m.q_W, limits::kUnitVector), v(m.buttons), v(m.flags);
+    if ((m.flags & kRequestsAhead) != 0) v(m.lead_ns, limits::kLead);
     if ((m.flags & kRequestsSurface) != 0) v(m.pages_taken);
     if ((m.flags & kAsksPages) != 0) v(m.surface_version), v(m.pages);
   }
@@ -138,7 +173,7 @@ struct ToolState {
 /// Visits a `Linearisation` without its place and force, which a message has beside it.
 template <class Self, class Visitor>
 void linearisation_fields(Self& m, Visitor&& v) {
-  v(m.tangent), v(m.normal_W), v(m.gap);
+  v(m.tangent), v(m.normal_W, limits::kUnitVectorOrZero), v(m.gap, limits::kGap);
 }
 
 /// Which model of the surface the tool can touch there is (its pages: `SurfacePage`), and where it stands.
@@ -151,15 +186,16 @@ struct SurfaceState {
   Vec3 shift_W = Vec3::Zero();  ///< from rest to where the surface near the tool is free of it, m
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
-    v(m.version), v(m.vertices), v(m.triangles), v(m.tool_radius), v(m.tool_friction), v(m.tool_compliance),
-        v(m.shift_W);
+    v(m.version), v(m.vertices, limits::kVertices), v(m.triangles, limits::kTriangles),
+        v(m.tool_radius, limits::kToolRadiusOrNone), v(m.tool_friction, limits::kFriction),
+        v(m.tool_compliance, limits::kToolCompliance), v(m.shift_W);
   }
 };
 
 /// Visits `OtherTools`.
 template <class Self, class Visitor>
 void other_tools_fields(Self& m, Visitor&& v) {
-  v(m.v_W), v(m.compliance);
+  v(m.v_W), v(m.compliance, limits::kCompliance);
 }
 
 /// State of the slow modes of a body in motion; their shapes on its surface: `SurfacePage`s.
@@ -169,8 +205,9 @@ struct ModalState {
   std::array<float, kMaxPublishedModes> q = {}, v = {};
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
-    v(m.count);
-    for (std::size_t k = 0; k < m.count && k < m.q.size(); ++k) v(m.q[k]), v(m.v[k]);
+    v(m.count, limits::kModes);
+    for (std::size_t k = 0; k < m.count && k < m.q.size(); ++k)
+      v(m.q[k], limits::kAmplitude), v(m.v[k], limits::kAmplitude);
   }
 };
 
@@ -183,8 +220,8 @@ struct ModalLoads {
   std::array<float, kMaxPublishedModes> load = {};  ///< of the first `count`, N/sqrt(kg)
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
-    v(m.count);
-    for (std::size_t k = 0; k < m.count && k < m.load.size(); ++k) v(m.load[k]);
+    v(m.count, limits::kModes);
+    for (std::size_t k = 0; k < m.count && k < m.load.size(); ++k) v(m.load[k], limits::kAmplitude);
   }
 };
 
@@ -193,6 +230,7 @@ struct ModalLoads {
 struct RelaxedState {
   static constexpr std::size_t kMostAmplitudes = kMaxPublishedModes;  ///< in one sample: a term of all modes
   static constexpr std::size_t kMostForces = 16;                      ///< in one sample
+  static constexpr Range kForces{0, kMostForces};
   /// The Prony series, at most `kMostRelaxations` terms: share of the stress at once, and time, s.
   std::uint8_t terms = 0;
   std::array<float, kMostRelaxations> fraction = {}, time = {};
@@ -209,15 +247,16 @@ struct RelaxedState {
   std::array<Vertex, kMostForces> vertex = {};
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
-    v(m.terms);
+    v(m.terms, limits::kRelaxations);
     const auto terms = std::min<std::size_t>(m.terms, kMostRelaxations);
-    for (std::size_t j = 0; j < terms; ++j) v(m.fraction[j]), v(m.time[j]);
-    v(m.first), v(m.count);
-    for (std::size_t i = 0; i < m.count * terms && i < m.z.size(); ++i) v(m.z[i]);
-    v(m.vertices);
+    for (std::size_t j = 0; j < terms; ++j)
+      v(m.fraction[j], limits::kFraction), v(m.time[j], limits::kRelaxationTime);
+    v(m.first, limits::kModes), v(m.count, limits::kModes);
+    for (std::size_t i = 0; i < m.count * terms && i < m.z.size(); ++i) v(m.z[i], limits::kAmplitude);
+    v(m.vertices, kForces);
     for (std::size_t i = 0; i < m.vertices && (i + 1) * terms <= kMostForces && i < m.vertex.size(); ++i) {
       v(m.vertex[i].number);
-      for (std::size_t k = 0; k < 3 * terms; ++k) v(m.vertex[i].psi[k]);
+      for (std::size_t k = 0; k < 3 * terms; ++k) v(m.vertex[i].psi[k], limits::kAmplitude);
     }
   }
 };
@@ -269,14 +308,14 @@ struct ForceSample {
   std::uint32_t cuts = 0;
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
-    v(m.tool), v(m.number), v(m.tool_tick), v(m.tool_t_ns), v(m.p_W), v(m.f_W), v(m.torque_W), v(m.step_ns),
-        v(m.flags);
+    v(m.tool, limits::kToolNumber), v(m.number, limits::kFromOne), v(m.tool_tick),
+        v(m.tool_t_ns, limits::kTime), v(m.p_W), v(m.f_W), v(m.torque_W), v(m.step_ns), v(m.flags);
     if ((m.flags & kHasTangent) != 0) v(m.surface_v_W), linearisation_fields(m.at_tool, v);
     if ((m.flags & kHasAhead) != 0) v(m.ahead_p_W), v(m.ahead_f_W), linearisation_fields(m.ahead, v);
     if ((m.flags & kHasSurface) != 0) SurfaceState::fields(m.surface, v);
     if ((m.flags & kHasErrors) != 0) {
-      v(m.errors.mesh.source), v(m.errors.mesh.percent);
-      v(m.errors.time_step.source), v(m.errors.time_step.percent);
+      v(m.errors.mesh.source), v(m.errors.mesh.percent, limits::kPercent);
+      v(m.errors.time_step.source), v(m.errors.time_step.percent, limits::kPercent);
     }
     if ((m.flags & kHasOthers) != 0) other_tools_fields(m.others, v);
     if ((m.flags & kHasModes) != 0) ModalState::fields(m.modes, v);
@@ -300,7 +339,7 @@ struct SurfacePage {
   std::array<float, kValues> values = {};
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
-    v(m.tool), v(m.version), v(m.page), v(m.values);
+    v(m.tool, limits::kToolNumber), v(m.version), v(m.page, limits::kPageNumber), v(m.values);
   }
 };
 
@@ -311,6 +350,7 @@ struct Telemetry {
   static constexpr MessageType kType = MessageType::kTelemetry;
   /// A full message has 218 + 4 x 24 x (1 + 8) bytes and fits into `kMaxDatagram` with header and tag.
   static constexpr std::size_t kMostTicks = 24, kMostLaws = 8, kNameBytes = 32;
+  static constexpr Range kTicks{0, kMostTicks}, kLaws{0, kMostLaws}, kColumn{0, 7};
   /// Bits of `flags`.
   enum Flag : std::uint16_t {
     kHasMotors = 1,
@@ -355,11 +395,12 @@ struct Telemetry {
   std::array<float, kMostTicks* kMostLaws> by_law = {};  ///< `laws` of a tick in a row
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
-    v(m.tool), v(m.flags), v(m.t_ns), v(m.dt_ns), v(m.p_W), v(m.f_W), v(m.age_ns), v(m.loop.period_ns),
-        v(m.loop.longest_period_ns), v(m.loop.ticks), v(m.loop.missed), v(m.passivity_gain),
-        v(m.interventions.faded), v(m.interventions.clamped), v(m.interventions.slewed),
-        v(m.interventions.damped), v(m.device), v(m.rendered_law), v(m.named), v(m.name), v(m.error_percent),
-        v(m.laws), v(m.count);
+    v(m.tool, limits::kToolNumber), v(m.flags), v(m.t_ns), v(m.dt_ns), v(m.p_W), v(m.f_W), v(m.age_ns),
+        v(m.loop.period_ns), v(m.loop.longest_period_ns), v(m.loop.ticks), v(m.loop.missed),
+        v(m.passivity_gain, limits::kFraction), v(m.interventions.faded), v(m.interventions.clamped),
+        v(m.interventions.slewed), v(m.interventions.damped), v(m.device), v(m.rendered_law),
+        v(m.named, kColumn), v(m.name), v(m.error_percent, limits::kPercentOrUnknown), v(m.laws, kLaws),
+        v(m.count, kTicks);
     for (std::size_t i = 0; i < m.count && i < kMostTicks; ++i) v(m.rendered[i]);
     for (std::size_t i = 0; i < m.count * m.laws && i < m.by_law.size(); ++i) v(m.by_law[i]);
   }
@@ -375,7 +416,7 @@ struct Pointer {
   std::uint16_t buttons = 0;  ///< one bit each
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
-    v(m.tool), v(m.number), v(m.p_W), v(m.buttons);
+    v(m.tool, limits::kToolNumber), v(m.number, limits::kFromOne), v(m.p_W), v(m.buttons);
   }
 };
 

@@ -24,9 +24,6 @@
 
 namespace palpate::protocol {
 
-/// Each client reserves memory for a model of this size (`SurfaceModel`, 11 MB).
-constexpr std::uint32_t kMostSurfaceVertices = 20'000;
-
 /// The pages of a model of so many vertices and triangles.
 struct SurfacePages {
   static constexpr std::uint32_t kCluster = SurfacePage::kCluster;

@@ -43,6 +43,11 @@ class Writer {
     for (const T& value : values) (*this)(value);
   }
 
+  template <class T, class Limits>
+  void operator()(const T& value, const Limits&) noexcept {
+    (*this)(value);
+  }
+
   std::size_t size() const noexcept { return at_; }
 
  private:
@@ -90,6 +95,12 @@ class Reader {
   template <class T, std::size_t N>
   void operator()(std::array<T, N>& values) noexcept {
     for (T& value : values) (*this)(value);
+  }
+
+  /// Does not look at limits: `valid` does.
+  template <class T, class Limits>
+  void operator()(T& value, const Limits&) noexcept {
+    (*this)(value);
   }
 
   bool complete() const noexcept { return complete_; }

@@ -79,7 +79,7 @@ std::optional<ToolState> read_tool_state(const palpate_tool_state& from) noexcep
   for (const double x : to.q_W) square += x * x;
   if (square == 0)
     to.q_W = {1, 0, 0, 0};
-  else if (!(std::abs(square - 1) < protocol::kUnitTolerance))
+  else if (!(std::abs(square - 1) < protocol::limits::kUnitVector.tolerance))
     return {};
   return to;
 }

@@ -6,7 +6,7 @@ import re
 
 TOKEN = re.compile(r"""
     (?P<behind>///<[^\n]*) | (?P<before>///[^\n]*) | (?P<none>//[^\n]*|/\*.*?\*/|^\#(?:include|pragma)[^\n]*|\s+)
-    | (?P<word>[A-Za-z_]\w*(?:::[A-Za-z_]\w*)*) | (?P<number>\d[\w.']*) | (?P<string>"(?:[^"\\\n]|\\.)*"|'[^'\n]*')
+    | (?P<word>[A-Za-z_]\w*(?:::[A-Za-z_]\w*)*) | (?P<number>\d(?:[eE][-+]\d|[\w.'])*) | (?P<string>"(?:[^"\\\n]|\\.)*"|'[^'\n]*')
     | (?P<mark>&&|\+\+|!=|<=|.)""", re.X | re.M | re.S)
 OPENING, CLOSING = "([{", ")]}"
 
@@ -326,6 +326,26 @@ def read_headers(path, name, root):
 
 
 # Values ---------------------------------------------------------------------------------------------------------------
+
+
+def values_of(constant):
+    """Of `constexpr TYPE NAME{a, -b, true};`: the values in the braces."""
+    return [value_of(tokens, constant) for tokens in split(constant.value[1:-1], ",")]
+
+
+def value_of(tokens, constant):
+    texts = [token.text for token in tokens]
+    if texts in (["true"], ["false"]):
+        return texts == ["true"]
+    if texts[:1] == ["-"]:
+        return -value_of(tokens[1:], constant)
+    if len(texts) == 1 and re.fullmatch(r"\d[\d.']*e[-+]?\d+", texts[0]):
+        return float(texts[0].replace("'", ""))
+    if len(texts) == 1 and tokens[0].kind == "word":
+        named = constant.scope.find("constants", texts[0])
+        if named is not None:
+            return value_of(named.value, named)
+    return number_of(tokens, constant.scope)
 
 
 def number_of(tokens, scope):

@@ -1,6 +1,7 @@
 """Reads the visitor `fields` of a struct: what it visits, in wire order, as steps. For make_fields. A step is one of
 
-    Visit(path, struct)    v(m.a), v(m.a.b), v(m.a[i].b): path ("a", "b"); X::fields(m.a, v) or x_fields(m.a, v): struct "X"
+    Visit(path, struct)    v(m.a), v(m.a.b), v(m.a[i].b): path ("a", "b"); X::fields(m.a, v) or x_fields(m.a, v): struct "X";
+                           v(m.a, kLimits): limits "kLimits"
     If(flag, steps)        if ((m.flags & kBit) != 0) ...
     Loop(count, ...)       for (std::size_t i = 0; i < m.n && i < kMost && (i + 1) * m.each <= kRoom; ++i) ...
     Limit(name, most)      const auto n = std::min<std::size_t>(m.n, kMost);
@@ -15,6 +16,7 @@ class Visit:
     path: tuple    # names of members
     indices: tuple  # for each: whether it has an index
     struct: str    # whose visitor is called, if one is
+    limits: str    # the constant that says which values are allowed, if one does
     token: Token
 
 
@@ -141,9 +143,13 @@ def visit(body):
         body.at -= 1
         raise body.fault(f"'{name}' is not a statement that is known", change)
     body.take("(", change=change)
-    path, indices = place(body, change)
-    body.take(*[",", "v", ")"] if struct else [")"], change=change)
-    return Visit(path, indices, struct, token)
+    (path, indices), limits = place(body, change), None
+    if struct:
+        body.take(",", "v", change=change)
+    elif body.may_take(","):
+        limits = body.take_name(change)
+    body.take(")", change=change)
+    return Visit(path, indices, struct, limits, token)
 
 
 def place(body, change):

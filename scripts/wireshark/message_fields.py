@@ -1,25 +1,32 @@
 """Puts together what protocol/messages.h says of each message: a table of plain lists and dictionaries, for make_fields. It
 has
 
-    messages   name, number on the wire, sender ("client", "server", "either") and comment of each
-    enums      by name: the words for each number
-    constants  by name, as ToolState.kNoPage
-    structs    by name: steps in wire order. A step is a field (name, type, unit, about, and what else its type needs: size,
-               parts, enum, flags, hex, at_most), a struct in a place (name, struct), steps under a flag (flag, steps), or
+    messages   name, number on the wire, sender ("client", "server", "either"), comment and steps of each, in wire order. A
+               step is a field (name, type, unit, about; what else its type needs: size, parts, enum, flags, hex;
+               its limits: within has the least and the most value, and true if the least itself is outside, unit_length
+               says of a vector how near to 1 its square is, and whether it may be 0; at_most bounds a count), steps under a flag (flag, of: the field; steps), or
                steps that repeat (count: factors of how often, most; each and room: what a time takes of how much; steps)
+    enums      by name: the words for each number
+
+The name of a field is its place in the message, as surface.tool_radius, without the frame or the unit at its end. Where
+two messages, or a message and the dissector itself, mean different things by a name, the name of the message is in front:
+telemetry.flags.
 """
+import collections
 import re
 
-from cpp_declarations import Alias, Enum, NotUnderstood, Scope, number_of, read_headers, read_type
+from cpp_declarations import Alias, Enum, NotUnderstood, Scope, number_of, read_headers, read_type, values_of
 from cpp_visitors import If, Limit, Loop, steps_of
 
 SCALARS = {"std::uint8_t": "u8", "std::uint16_t": "u16", "std::uint32_t": "u32", "std::uint64_t": "u64",
            "std::int64_t": "i64", "float": "f32", "double": "f64"}
 SIZES = {"u8": 1, "u16": 2, "u32": 4, "u64": 8, "i64": 8, "f32": 4, "f64": 8}
-INTEGERS = ("int", "std::size_t", *(name for name, type_ in SCALARS.items() if type_[0] != "f"))
 # Units: those that a name ends in, and those that a comment mentions at its front or behind a comma.
 SUFFIXES = {"_ns": "ns", "_hz": "Hz", "_percent": "%"}
 ATOM = r"(?:m|s|N|kg|rad|1|%|sqrt\(kg\))"
+# Fields that palpate_fields.lua has besides: of the header, and computed.
+TAKEN = ("magic", "version", "type", "payload_length", "tag_length", "key", "reserved", "session", "sequence", "padding",
+         "extra", "tag", "tag_verdict", "force", "age", "round_trip", "gap", "answers")
 UNIT = re.compile(rf"(?:^|, )({ATOM}(?:[ /]{ATOM})*)(?=$|[,.;: ])")
 
 
@@ -52,9 +59,27 @@ def about(member):
     return re.sub(r"^(with )?k[A-Z]\w*(, with k[A-Z]\w*)?(: ?|$)", "", member.about)
 
 
-def described(step, name, member):
-    """The step of a field, with its unit and comment."""
+def limits_of(struct, one, type_):
+    """The limits of a field, as the visitor names them; those of a real number are kAnyReal, if it names none."""
+    name = (one.limits or ("kAnyReal" if type_ in ("f32", "f64") else "")).removeprefix("limits::")
+    constant = struct.find("constants", name) if name else None
+    if constant is None or constant.type.name not in ("Range", "UnitLength"):
+        if one.limits:
+            raise NotUnderstood(one.token.place, f"{struct.name}::fields: {one.limits} is no constant that limits a value",
+                                "declare it: constexpr Range NAME{LEAST, MOST};")
+        return {}
+    values = [int(one) if isinstance(one, float) and one.is_integer() and abs(one) < 1e15 else one
+              for one in values_of(constant)]
+    return {"within": values} if constant.type.name == "Range" else \
+        {"unit_length": {"tolerance": values[0], "or_zero": values[1]}}
+
+
+def described(step, struct, one, member):
+    """The step of a field, with its unit, comment and limits."""
+    name = one.path[-1]
     kind = {"unit": unit_of(name, member, step["type"] in ("f32", "f64")), "about": about(member)}
+    if "enum" not in step:
+        kind.update(limits_of(struct, one, step["type"]))
     if "one bit each" in member.about:
         kind["hex"] = True
     return {**step, **{key: value for key, value in kind.items() if value}}
@@ -171,7 +196,7 @@ class Table:
         if one.struct is None and isinstance(kind, Enum):
             self.enums[kind.name] = kind
             type_ = resolve(kind.type, self.scope, one.token.place)["type"]
-            return [described({"name": name, "type": type_, "enum": kind.name}, one.path[-1], member)]
+            return [described({"name": name, "type": type_, "enum": kind.name}, struct, one, member)]
         if one.struct is None and isinstance(kind, dict):
             return [self.numbers(struct, name, kind, one, member)]
         raise NotUnderstood(one.token.place, f"{struct.name}::fields: m.{'.'.join(one.path)} has another type",
@@ -180,7 +205,7 @@ class Table:
     def numbers(self, struct, name, kind, one, member):
         """The step of a number, or of several."""
         if "element" not in kind:
-            step = described({"name": name, **kind}, one.path[-1], member)
+            step = described({"name": name, **kind}, struct, one, member)
             if one.path == ("flags",):
                 step["flags"] = [[snake(flag), value] for flag, value in flags_of(struct).items()]
             return step
@@ -190,8 +215,8 @@ class Table:
                                 "visit its elements in a loop")
         parts = parts_of(member, size, self.all_structs) if element["type"] == "f64" else None
         if parts:
-            return described({"name": name, **element, "parts": parts}, one.path[-1], member)
-        return {"count": [size], "steps": [described({"name": name, **element}, one.path[-1], member)]}
+            return described({"name": name, **element, "parts": parts}, struct, one, member)
+        return {"count": [size], "steps": [described({"name": name, **element}, struct, one, member)]}
 
     def words(self, enum):
         """By number: what `name_of` in the headers says of a value, else its name in words."""
@@ -225,14 +250,60 @@ def flags_of(struct):
     return flags
 
 
-def constants_of(scope):
-    """Numbers that are no flags, of all namespaces or of a struct."""
-    flags = flags_of(scope)
-    return {f"{scope.name}.{name}".lstrip("."): number_of(constant.value, constant.scope)
-            for name, constant in scope.constants.items() if constant.type.name in INTEGERS and name not in flags}
+# Messages -------------------------------------------------------------------------------------------------------------
 
 
-def message_of(struct, types):
+def flat(steps, structs, prefix=""):
+    """Steps with those of each struct in its place, and the names of fields as they are in the whole message."""
+    found = []
+    for step in steps:
+        if "struct" in step:
+            found += flat(structs[step["struct"]], structs, f"{prefix}{step['name']}.")
+            continue
+        step = dict(step)
+        if "flag" in step:
+            step["of"] = f"{prefix}flags"
+        if "steps" in step:
+            step["steps"] = flat(step["steps"], structs, prefix)
+        found.append(renamed(step, lambda name: prefix + name, lambda name: name))
+    return found
+
+
+def renamed(step, new_name, new_of):
+    """A step with other names of its own, of its counts and of its field of flags."""
+    step = dict(step)
+    for key, rename in (("name", new_name), ("each", new_name), ("of", new_of)):
+        if key in step:
+            step[key] = rename(step[key])
+    if "count" in step:
+        step["count"] = [new_name(one) if isinstance(one, str) else one for one in step["count"]]
+    return step
+
+
+def all_fields(steps):
+    return [field for step in steps for field in (all_fields(step["steps"]) if "steps" in step else [step])]
+
+
+def with_front(steps, names, front):
+    """Steps with the name of the message in front of some names."""
+    def rename(name):
+        return f"{front}.{name}" if name in names else name
+    steps = [renamed(step, rename, rename) for step in steps]
+    return [{**step, "steps": with_front(step["steps"], names, front)} if "steps" in step else step for step in steps]
+
+
+def name_apart(messages):
+    """Puts the name of the message in front of names that would mean different things."""
+    kinds = collections.defaultdict(set)
+    for message in messages:
+        for field in all_fields(message["steps"]):
+            kinds[field["name"]].add(repr([field.get(key) for key in ("type", "unit", "parts", "enum", "flags", "size")]))
+    shared = {name for name, found in kinds.items() if len(found) > 1} | set(TAKEN)
+    for message in messages:
+        message["steps"] = with_front(message["steps"], shared, snake(message["name"]))
+
+
+def message_of(struct, types, steps):
     """Of a struct with a kType: its row."""
     constant = struct.constants["kType"]
     name = "".join(token.text for token in constant.value).removeprefix("MessageType::")
@@ -243,7 +314,7 @@ def message_of(struct, types):
     if sender not in ("client", "server", "either"):
         raise NotUnderstood(constant.place, f"the comment of {name} in enum MessageType does not name its sender",
                             "write ///< client: ..., server: ... or either: ... behind it")
-    return {"name": struct.name, "type": types.values[name], "sender": sender, "about": meaning}
+    return {"name": struct.name, "type": types.values[name], "sender": sender, "about": meaning, "steps": steps}
 
 
 def table_of(path, name, root):
@@ -253,9 +324,8 @@ def table_of(path, name, root):
     if not isinstance(types, Enum):
         raise NotUnderstood(f"{name}:1", "there is no enum MessageType",
                             "declare it: enum class MessageType : std::uint8_t {...};")
-    constants = constants_of(scope)
-    for struct in table.all_structs:
-        constants.update(constants_of(struct) if struct.visitor is not None else {})
-    messages = [message_of(struct, types) for struct in table.all_structs if "kType" in struct.constants]
-    return {"messages": sorted(messages, key=lambda message: message["type"]), "constants": constants,
-            "enums": {enum.name: table.words(enum) for enum in table.enums.values()}, "structs": table.structs}
+    messages = [message_of(struct, types, flat(table.structs.get(struct.name, []), table.structs))
+                for struct in table.all_structs if "kType" in struct.constants]
+    name_apart(messages)
+    return {"messages": sorted(messages, key=lambda message: message["type"]),
+            "enums": {enum.name: table.words(enum) for enum in table.enums.values()}}

@@ -4,13 +4,13 @@
 
 local FOLDER = debug.getinfo(1, "S").source:match("^@?(.*[/\\])") or ""
 local function part(name) return dofile(FOLDER .. name) end
-local P = part("palpate_fields.lua")(part("palpate_table.lua"), part("palpate_words.lua")())
+local P = part("palpate_fields.lua")(part("palpate_table.lua"))
 local read_message, new_reader = part("palpate_messages.lua")(P)
 local sessions = part("palpate_sessions.lua")(P, part("blake2b.lua"))
 
 local PORT = 45130
 local TYPE = P.types
-local F, E, flag_lists = P.fields, P.experts, P.flag_lists
+local F, E = P.fields, P.experts
 
 local palpate = Proto("palpate", "Palpate")
 palpate.prefs.key_file = Pref.string("Key file", "", "Text file with lines of \"palpate-key NUMBER 64-HEX-DIGITS\"")
@@ -29,13 +29,9 @@ local function in_mm(p) return ("(%.2f, %.2f, %.2f) mm"):format(p[1] * 1e3, p[2]
 local function size_of(f) return math.sqrt(f[1] ^ 2 + f[2] ^ 2 + f[3] ^ 2) end
 local function hex_of(bytes) return (bytes:gsub(".", function(c) return ("%02x"):format(c:byte()) end)) end
 
--- The names of the flags that are set.
-local function names_of(name, set)
-  local names = {}
-  for _, flag in ipairs(flag_lists[name]) do
-    if set[flag[1]] then table.insert(names, flag[1]) end
-  end
-  return table.concat(names, ",")
+-- The names of the flags that are set, behind a comma.
+local function names_of(set)
+  return (#set > 0 and ", " or "") .. table.concat(set, ",")
 end
 
 local info_of = {}  -- by type, where a line says more than the type: what matters of a message
@@ -52,23 +48,23 @@ info_of[TYPE.ToolState] = function(v, result)
   return (" tool %d, tick %s, p %s, used sample %s%s%s"):format(
     v.tool, tostring(v.tick), in_mm(v.p), tostring(v.newest_sample),
     result.age and (", %.1f ms old"):format(result.age) or "",
-    v.state == 0 and "" or ", " .. names_of("state", v.state_set))
+    names_of(v["tool_state.flags_set"]))
 end
 info_of[TYPE.ForceSample] = function(v, result)
   return (" tool %d, number %s, answers tick %s%s, |f| %.3f N%s"):format(
-    v.tool, tostring(v.sample), tostring(v.tool_tick),
+    v.tool, tostring(v.number), tostring(v.tool_tick),
     result.round_trip and (" after %.1f ms"):format(result.round_trip) or "", size_of(v.f),
-    v.answer == 0 and "" or ", " .. names_of("answer", v.answer_set))
+    names_of(v["force_sample.flags_set"]))
 end
 info_of[TYPE.Telemetry] = function(v)
-  return (" tool %d, feels %.3f N by %s on %s, %d ticks told"):format(v.tool, size_of(v.f), v.felt_law, v.device, v.count)
+  return (" tool %d, renders %.3f N by %s on %s, %d ticks"):format(v.tool, size_of(v.f), v.rendered_law, v.device, v.count)
 end
 info_of[TYPE.Pointer] = function(v)
-  return (" tool %d, number %s, p %s"):format(v.tool, tostring(v.pointer), in_mm(v.p))
+  return (" tool %d, number %s, p %s"):format(v.tool, tostring(v.number), in_mm(v.p))
 end
 info_of[TYPE.SurfacePage] = function(v, result)
   return (" tool %d, page %d of model %d%s"):format(
-    v.tool, v.page, v["page.version"], result.page_kind and ": " .. result.page_kind or "")
+    v.tool, v.page, v["surface_page.version"], result.page_kind and ": " .. result.page_kind or "")
 end
 
 -- The dissector -------------------------------------------------------------------------------------------------------
@@ -85,13 +81,13 @@ end
 -- What is wrong with a header whose version is known. `items` are its lines in the tree, by name; `whole` the bytes that
 -- were sent.
 local function judge_header(d, items, whole, fault)
-  local told = P.header + d.payload + d.tag
+  local expected = P.header + d.payload + d.tag
   if d.reserved:match("[^%z]") then fault(items.reserved, "bad_reserved", "reserved bytes are not 0") end
   if d.tag ~= 0 and d.tag ~= P.tag then
     fault(items.tag_length, "bad_length", ("a tag of %d bytes; 0 or 16 are allowed"):format(d.tag))
   end
-  if whole ~= told then
-    fault(items.payload_length, "bad_length", ("%d bytes, where the header tells of %d"):format(whole, told))
+  if whole ~= expected then
+    fault(items.payload_length, "bad_length", ("%d bytes, where the header says %d"):format(whole, expected))
   elseif whole > P.longest then
     fault(items.payload_length, "bad_length", ("%d bytes; %d are allowed"):format(whole, P.longest))
   end

@@ -1,9 +1,8 @@
 -- The fields of Palpate's messages as Wireshark shows them, what may be wrong with a datagram, and the numbers of a header
--- (protocol/README.md). What a message holds comes from palpate_table.lua, with the words of palpate_words.lua. For
--- palpate.lua: gives a function of both, so that nothing happens where Wireshark loads this file by itself.
+-- (protocol/README.md). What a message holds comes from palpate_table.lua. For palpate.lua: gives a function of it, so that
+-- nothing happens where Wireshark loads this file by itself.
 
-return function(TABLE, words)
-  local name_of, label_of, branch_of = words.name_of, words.label_of, words.branch_of
+return function(TABLE)
   local HEADER, TAG, LONGEST = 28, 16, 1200    -- bytes
   local HELLO_PAYLOAD = 256                    -- bytes that a Hello is padded to
   local VERSION = 2
@@ -21,7 +20,7 @@ return function(TABLE, words)
   local labels = {}
   local function field(kind, name, label, ...)
     if F[name] and labels[name] == kind .. label then return end
-    if F[name] then error(("palpate_words.lua: two fields are called %s; give one another name there"):format(name), 0) end
+    if F[name] then error(("palpate_fields.lua: two fields are called %s; add it to TAKEN in message_fields.py"):format(name), 0) end
     F[name], labels[name] = ProtoField[kind]("palpate." .. name, label, ...), kind .. label
     table.insert(all_fields, F[name])
   end
@@ -51,67 +50,23 @@ return function(TABLE, words)
 
   -- What the messages hold ---------------------------------------------------------------------------------------------
 
+  -- The name without the part of the message that it lies in; letters of formulas stay as they are.
   local function in_words(name)
-    local text = name:match("[^.]+$"):gsub("_", " ")
-    return text:sub(1, 1):upper() .. text:sub(2)
+    local text = (name:match("%.(.*)") or name):gsub("[_.]", " ")
+    return #text < 3 and text or text:sub(1, 1):upper() .. text:sub(2)
   end
 
   local function with_unit(label, unit)
-    if not unit then return label end
-    local text, count = label:gsub("{unit}", (unit:gsub("%%", "%%%%")))
-    return count > 0 and text or ("%s (%s)"):format(label, unit)
+    return unit and ("%s (%s)"):format(label, unit) or label
   end
-
-  -- Steps of the table become steps of the dissector: fields with the names that users know, structs replaced by what they
-  -- hold, and a `branch` where a line of the tree has all below it.
 
   local KINDS = {u8 = "uint8", u16 = "uint16", u32 = "uint32", u64 = "uint64", i64 = "int64", f32 = "float", f64 = "double",
                  bytes = "bytes", text = "stringz"}
   local BITS = {u8 = 8, u16 = 16, u32 = 32}
 
-  local function is_part(flag) return flag:match("^has_") ~= nil end
-
-  -- The name of a flag: the part that follows, or what it requests.
-  local function flag_name(struct, flag, parts)
-    local name = name_of(struct .. "." .. flag)
-    if name then return name end
-    return parts[flag] and flag:match("^has_(.*)") or (flag:gsub("^requests_", "wants_"))
-  end
-
-  local function flag_label(name, flag, is_a_part)
-    local label, short = label_of(name), name:match("[^.]+$")
-    if label then return label end
-    if is_a_part then return ("\"%s\" follows"):format(short) end
-    if flag:match("^requests_") then return ("Asks for \"%s\""):format(short:gsub("^wants_", "")) end
-    return in_words(name)
-  end
-
-  -- The flags that have steps, by their names in the table.
-  local function parts_of(steps)
-    local parts = {}
-    for _, step in ipairs(steps) do
-      if step.flag and is_part(step.flag) then parts[step.flag] = true end
-    end
-    return parts
-  end
-
-  local flag_lists = {}  -- by the name of the field: pairs of name and mask
-  local function add_flags(step, name, struct)
-    local parts, list = parts_of(TABLE.structs[struct]), {}
-    for _, flag in ipairs(step.flags) do
-      local short, mask = flag_name(struct, flag[1], parts), flag[2]
-      local full = name .. "." .. short
-      field("bool", full, flag_label(full, flag[1], parts[flag[1]]), BITS[step.type], {"yes", "no"}, mask)
-      table.insert(list, {short, mask})
-    end
-    flag_lists[name] = list
-    return list
-  end
-
-  local function add_field(step, name, struct)
-    local label, kind = label_of(name) or in_words(name), KINDS[step.type]
-    local new = {name = name, type = step.type, size = step.size, parts = step.parts, unit = step.unit, label = label,
-                 names = step.enum and TABLE.enums[step.enum], at_most = step.at_most}
+  local function add_field(step)
+    local name, kind, label = step.name, KINDS[step.type], in_words(step.name)
+    step.label, step.names = label, step.enum and TABLE.enums[step.enum]
     if step.parts then
       for _, part in ipairs(step.parts) do
         field(kind, name .. "." .. part, with_unit(label .. " " .. part, step.unit), step.about)
@@ -122,56 +77,32 @@ return function(TABLE, words)
       field(kind, name, label, base[kind == "bytes" and "NONE" or "ASCII"], step.about)
     else
       local shown = (step.hex or step.flags) and base.HEX or base.DEC
-      field(kind, name, with_unit(label, step.unit), shown, new.names, nil, step.about)
+      field(kind, name, with_unit(label, step.unit), shown, step.names, nil, step.about)
     end
-    new.flags = step.flags and add_flags(step, name, struct)
-    return new
-  end
-
-  local steps_of
-
-  local function add_loop(step, struct, prefix)
-    local function full(name)
-      return type(name) == "string" and prefix .. (name_of(struct .. "." .. name) or name) or name
+    for _, flag in ipairs(step.flags or {}) do
+      field("bool", name .. "." .. flag[1], in_words(flag[1]), BITS[step.type], {"yes", "no"}, flag[2])
     end
-    local new = {count = {}, most = step.most, room = step.room, each = full(step.each)}
-    for i, factor in ipairs(step.count) do new.count[i] = full(factor) end
-    new.steps = steps_of(step.steps, struct, prefix)
-    new.branch = new.steps[1].name and branch_of(new.steps[1].name)
-    return new
   end
 
-  local function add_flagged(step, struct, prefix)
-    local flag = flag_name(struct, step.flag, parts_of(TABLE.structs[struct]))
-    return {of = name_of(struct .. ".flags") or "flags", flag = flag, steps = steps_of(step.steps, struct, prefix),
-            branch = is_part(step.flag) and ("Part \"%s\""):format(flag) or nil}
-  end
-
-  function steps_of(steps, struct, prefix)
-    local list = {}
+  -- Adds the fields of steps; gives a line of the tree, as `branch`, to a part that may follow, and to a number that repeats.
+  local function add_fields(steps)
     for _, step in ipairs(steps) do
-      local name = step.name and prefix .. (name_of(struct .. "." .. step.name) or step.name)
-      if step.struct then
-        for _, inner in ipairs(steps_of(TABLE.structs[step.struct], step.struct, name .. ".")) do
-          table.insert(list, inner)
-        end
-      elseif step.flag then
-        table.insert(list, add_flagged(step, struct, prefix))
-      elseif step.count then
-        table.insert(list, add_loop(step, struct, prefix))
+      if not step.steps then
+        add_field(step)
       else
-        table.insert(list, add_field(step, name, struct))
+        add_fields(step.steps)
+        local part = step.flag and step.flag:match("^has_(.*)")
+        step.branch = part and ("Part \"%s\""):format((part:gsub("_", " ")))
+        if step.count and #step.steps == 1 then step.branch = step.steps[1].label end
       end
     end
-    return list
   end
 
   local messages = {}  -- by number on the wire
   for _, message in ipairs(TABLE.messages) do
-    messages[message.type] = {name = message.name, sender = message.sender,
-                              steps = steps_of(TABLE.structs[message.name], message.name, "")}
+    add_fields(message.steps)
+    messages[message.type] = message
   end
-  words.check_used()
 
   -- What is wrong with a datagram ---------------------------------------------------------------------------------------
 
@@ -202,8 +133,8 @@ return function(TABLE, words)
 
   return {
     types = types, type_names = type_names, messages = messages, reasons = TABLE.enums.RefuseReason,
-    constants = TABLE.constants, version = VERSION, header = HEADER, tag = TAG, longest = LONGEST,
+    version = VERSION, header = HEADER, tag = TAG, longest = LONGEST,
     hello_payload = HELLO_PAYLOAD, no_nonce = ("\0"):rep(16),
-    fields = F, all_fields = all_fields, flag_lists = flag_lists, experts = E, all_experts = all_experts,
+    fields = F, all_fields = all_fields, experts = E, all_experts = all_experts,
   }
 end

@@ -2,58 +2,16 @@
 -- them from the table of messages.h. For palpate.lua: gives a function of what palpate_fields.lua gives.
 
 return function(P)
-  local F, E, constants = P.fields, P.experts, P.constants
+  local F, E = P.fields, P.experts
 
-  -- Limits --------------------------------------------------------------------------------------------------------------
-
-  -- A limit says what is wrong with a number, or nothing. They are those of `valid` in protocol/codec.cpp.
-  local function within(low, high)
-    return function(x)
-      if x < low or x > high then return ("is not within %.10g to %.10g"):format(low, high) end
-    end
-  end
-  local function above_0_up_to(high)
-    return function(x)
-      if x <= 0 or x > high then return ("is not above 0 and up to %g"):format(high) end
-    end
-  end
-  local function at_least_1(x)
-    if x < 1 then return "is 0" end
-  end
-  local function tool_radius(x, values)
-    return (values["surface.version"] == 0 and within(0, 1) or above_0_up_to(1))(x)
-  end
-  local function any() end
-
-  local ANY_REAL, AMPLITUDE, MODES = within(-1e9, 1e9), within(-1e6, 1e6), within(0, constants.kMaxPublishedModes)
-  local NO_PAGE, MOST_LAWS = constants["ToolState.kNoPage"], constants["Telemetry.kMostLaws"]
-  local LIMITS = {  -- of real numbers that are not in this list: ANY_REAL
-    tool = within(0, 7), rate = within(0, 1e6), tool_radius = above_0_up_to(1),
-    tick = at_least_1, q = any, lead = within(0, 1e10),
-    sample = at_least_1, ["here.normal"] = any, ["ahead.normal"] = any,
-    ["here.gap"] = within(0, 1e9), ["ahead.gap"] = within(0, 1e9),
-    ["surface.vertices"] = within(0, 20000), ["surface.triangles"] = within(0, 40000),
-    ["surface.tool_radius"] = tool_radius, ["surface.tool_friction"] = within(0, 10),
-    ["surface.tool_compliance"] = within(0, 1e6),
-    ["errors.mesh"] = within(0, 1e6), ["errors.time_step"] = within(0, 1e6), ["others.compliance"] = AMPLITUDE,
-    ["modes.q"] = AMPLITUDE, ["modes.v"] = AMPLITUDE, ["loads.load"] = AMPLITUDE,
-    ["relaxed.share"] = within(0, 1), ["relaxed.time"] = within(0, 1e6),
-    ["relaxed.first"] = MODES, ["relaxed.count"] = MODES, ["relaxed.z"] = AMPLITUDE, ["relaxed.psi"] = AMPLITUDE,
-    passivity_gain = within(0, 1), named = within(0, MOST_LAWS - 1),
-    law_error = within(-1e38, 1e6), laws = within(0, MOST_LAWS),
-    pointer = at_least_1, page = within(0, NO_PAGE - 1),
-  }
-  -- Vectors of length 1; or 0, where that says something.
-  local UNIT = {q = {may_be_0 = false}, ["here.normal"] = {may_be_0 = true}, ["ahead.normal"] = {may_be_0 = true}}
-  -- What is added to a number in the tree.
-  local NOTES = {asked_page = {[NO_PAGE] = ": none"}}
-
-  -- What is wrong with a number that a step reads, or nothing.
-  local function offence(step, x, values)
+  -- What is wrong with a number that a step reads, or nothing: limits of messages.h, as palpate_table.lua has them.
+  local function offence(step, x)
     if step.names then return not step.names[x] and "has no meaning" or nil end
-    if step.at_most then return within(0, step.at_most)(x) end
-    local limit = LIMITS[step.name] or (step.type:match("^f") and ANY_REAL) or any
-    return limit(x, values)
+    if not step.within then return nil end
+    local least, most, is_open = step.within[1], step.within[2], step.within[3]
+    if x < least or x > most or (is_open and x == least) then
+      return (is_open and "is not above %.10g and up to %.10g" or "is not within %.10g to %.10g"):format(least, most)
+    end
   end
 
   -- A reader of payloads ------------------------------------------------------------------------------------------------
@@ -98,8 +56,7 @@ return function(P)
     local item = (tree or self.tree):add_le(F[name], bytes)
     self.values[name], self.items[name] = value, item
     local x = type(value) == "number" and value or value:tonumber()
-    if NOTES[name] and NOTES[name][x] then item:append_text(NOTES[name][x]) end
-    local wrong = offence(step, x, self.values)
+    local wrong = offence(step, x)
     if x ~= x or x == math.huge or x == -math.huge then
       self:fault(item, "not_finite", name .. " is not a finite number")
     elseif wrong then
@@ -116,14 +73,16 @@ return function(P)
     self.values[step.name] = bytes:raw()
   end
 
-  -- ASCII, then zeros.
+  -- ASCII and zeros.
   function Reader:text(step)
     local bytes = self:take(step.size)
     if not bytes then return end
-    local item = self.tree:add(F[step.name], bytes)
-    self.values[step.name] = bytes:stringz()
-    if bytes:raw():match("^[ -~]*%z*$") == nil then
-      self:fault(item, "out_of_range", step.name .. " is not ASCII, then zeros")
+    local raw = bytes:raw()
+    local text = raw:match("^[^%z]*")  -- bytes:stringz() would go on behind a text that fills its field
+    local item = self.tree:add(F[step.name], bytes, text)
+    self.values[step.name] = text
+    if raw:match("^[ -~%z]*$") == nil then
+      self:fault(item, "out_of_range", step.name .. " is not ASCII")
     end
   end
 
@@ -142,13 +101,13 @@ return function(P)
     end
     branch:append_text((": (%s)%s"):format(table.concat(texts, ", "), step.unit and " " .. step.unit or ""))
     self.values[step.name] = list
-    local unit = UNIT[step.name]
-    if unit and not (math.abs(square - 1) < 1e-6 or (unit.may_be_0 and square == 0)) then
+    local unit = step.unit_length
+    if unit and not (math.abs(square - 1) < unit.tolerance or (unit.or_zero and square == 0)) then
       self:fault(branch, "out_of_range", step.name .. " does not have length 1")
     end
   end
 
-  -- A field of flags with its bits below; its value `name`_set has those that are set, by name.
+  -- A field of flags with its bits below; its value `name`_set has those that are set, as a list and by name.
   function Reader:flags(step)
     local value, item = self:number(step)
     if not item then return end
@@ -156,7 +115,10 @@ return function(P)
     for _, flag in ipairs(step.flags) do
       local name, mask = flag[1], flag[2]
       item:add_le(F[step.name .. "." .. name], self.bytes:range(self.at - size, size))
-      set[name] = math.floor(value / mask) % 2 == 1
+      if math.floor(value / mask) % 2 == 1 then
+        set[name] = true
+        table.insert(set, name)
+      end
     end
     self.values[step.name .. "_set"] = set
   end

@@ -126,7 +126,7 @@ return function(P, blake2b)
   -- A Welcome whose tag is good is not replaced by one whose tag is not.
   follow[TYPE.Welcome] = function(d, session, result)
     if session.is_proven and result.tag_verdict ~= "good" then return end
-    session.client_nonce, session.server_nonce = d.values.nonce, d.values.server_nonce
+    session.client_nonce, session.server_nonce = d.values.nonce, d.values.server
     session.client, session.is_proven = d.destination, result.tag_verdict == "good"
   end
 
@@ -146,8 +146,8 @@ return function(P, blake2b)
     end
     if session.last_sample then result.gap = ms_between(d.time, session.last_sample) end
     session.last_sample = d.time
-    session.tool_ts[tostring(v.sample)] = v.tool_t
-    if v.answer_set.surface then
+    session.tool_ts[tostring(v.number)] = v.tool_t
+    if v["force_sample.flags_set"].has_surface then
       session.surfaces[v["surface.version"]] = {
         vertices = v["surface.vertices"], triangles = v["surface.triangles"], modes = v["modes.count"] or 0}
     end
@@ -177,7 +177,7 @@ return function(P, blake2b)
   end
 
   follow[TYPE.SurfacePage] = function(d, session, result)
-    local surface = session.surfaces[d.values["page.version"]]
+    local surface = session.surfaces[d.values["surface_page.version"]]
     if surface then result.page_kind = kind_of_page(d.values.page, surface) end
   end
 

@@ -1,7 +1,12 @@
 #include "protocol/capture.h"
 
+#include <fstream>
+#include <map>
+
+#include "protocol/codec.h"
 #include "tests/support/captures.h"
 #include "tests/support/catch.h"
+#include "tests/support/paths.h"
 
 using namespace palpate;
 using namespace palpate::protocol;
@@ -180,6 +185,27 @@ TEST_CASE("a pcapng that mixes interfaces is refused, or read up to where it doe
   CHECK(content.payloads.size() == 1);
   CHECK(content.trouble.starts_with("mixes interfaces"));
   CHECK(content.trouble.ends_with("; the 1 packets before it were used"));
+}
+
+// Which of these the dissector refuses stands in limits.txt: scripts/wireshark/check.
+TEST_CASE("the codec refuses the values that the dissector refuses, and no others", "[capture]") {
+  const std::string folder = source_dir() + "/tests/wireshark/";
+  CaptureReader reader(folder + "limits.pcap");
+  std::ifstream expected(folder + "limits.txt");
+  CapturedDatagram captured;
+  std::string line;
+  std::map<Verdict, int> verdicts;
+  while (reader.next(captured)) {
+    REQUIRE(std::getline(expected, line));
+    Datagram datagram;
+    const Verdict verdict = decode(captured.bytes, datagram);
+    CAPTURE(line, name_of(verdict));
+    CHECK(verdict == (line.starts_with("refused") ? Verdict::kValue : Verdict::kAccepted));
+    ++verdicts[verdict];
+  }
+  CHECK_FALSE(std::getline(expected, line));
+  CHECK(verdicts[Verdict::kValue] > 200);
+  CHECK(verdicts[Verdict::kAccepted] > 300);
 }
 
 #endif
