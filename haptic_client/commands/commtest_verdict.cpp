@@ -17,7 +17,7 @@ struct Row {
   std::string_view law;
   std::array<double, kAges.size()> stable_to;  // N/m
 };
-// build/release/bin/stability_study --by-delay DIR
+// build/release/bin/studies stability DIR --by-delay
 constexpr std::array<Row, 11> kRows{{
     {"constant", {271, 154, 95, 80, 77, 67, 56}},
     {"linear_time", {309, 141, 84, 61, 43, 28, 0}},

@@ -7,7 +7,7 @@
 namespace palpate::client {
 
 /// How stiff a wall each law keeps stable, by the age of its samples: the least over linear and Hertzian
-/// walls and three hands, at 30 samples a second with passivity, of `stability_study --by-delay` (5 seeds,
+/// walls and three hands, at 30 samples a second with passivity, of `studies stability --by-delay` (5 seeds,
 /// within 5 %). Between two ages the smaller one; beyond the last: not known. N/m.
 std::optional<double> stable_to(std::string_view law, double age_ms);
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Run a study that a program of tests/studies does: stability, link or robustness. What it finds: STUDY --help.
+"""Run a study that the program of tests/studies does: stability, link or robustness. What it finds: STUDY --help.
 
 usage: in_programs.py STUDY --out DIR [--quick]
 
@@ -19,7 +19,7 @@ from pathlib import Path
 
 from workers import Failed, Workers
 
-BIN = Path(__file__).resolve().parents[2] / "build" / "release" / "bin"
+PROGRAM = Path(__file__).resolve().parents[2] / "build" / "release" / "bin" / "studies"
 
 STABILITY = """Find the stiffest wall that each law keeps stable in each hand, over rates and latencies.
 
@@ -52,8 +52,8 @@ healed, from 11 s on; the largest and the steepest force. An organ that moves by
 force between its steps: of it (--scene) the ticks count for which it computed one. Errors are
 those of link and extrapolation alone, and next to nothing where the law has the whole compliance
 of a linear organ; what its mesh and its law of the tissue cost is in none of them, and many times
-that (`sim_server study SCENE`). For another organ: build/release/bin/link_study --scene SCENE
-CLIENT DIR (six links).
+that (`sim_server study SCENE`). For another organ: build/release/bin/studies link DIR
+--scene SCENE --client CLIENT (six links).
 
 Writes summary.json into --out. The same bytes each time.
 """
@@ -87,10 +87,10 @@ The same bytes each time. Columns:
 """
 
 
-def run_one(program, out, quick):
-    """A program that does all of its study; shows its progress on one line."""
+def run_one(study, out, quick):
+    """A study that runs in one process; shows its progress on one line."""
     last = ""
-    with subprocess.Popen([BIN / program, *quick, out], stderr=subprocess.PIPE, text=True) as running:
+    with subprocess.Popen([PROGRAM, study, out, *quick], stderr=subprocess.PIPE, text=True) as running:
         for last in running.stderr:
             if sys.stderr.isatty():
                 print(f"\r\033[K{last.strip()}", end="", file=sys.stderr, flush=True)
@@ -101,7 +101,6 @@ def run_one(program, out, quick):
     return 1 if running.returncode else 0
 
 
-ROBUSTNESS = BIN / "robustness_study"
 LONGEST = 300  # s, of a cell
 SIGNS = {"stable": "", "refused": "refused", "flagged": "flagged", "wrong": "WRONG", "exploded": "EXPLODED", "not_applicable": "-"}
 
@@ -113,7 +112,7 @@ def row_of(case, model, outcome, reason):
 
 def run_cell(case, model, options):
     try:
-        ended = subprocess.run([ROBUSTNESS, *options, case, model], capture_output=True, text=True, check=False,
+        ended = subprocess.run([PROGRAM, "robustness", case, model, *options], capture_output=True, text=True, check=False,
                                timeout=LONGEST)
     except subprocess.TimeoutExpired:
         return row_of(case, model, "exploded", f"no answer within {LONGEST} s")
@@ -143,7 +142,7 @@ def table_of(rows, cases, models):
 
 def run_cells(out, quick):
     """Robustness: a process for each cell, so that one that crashes ends alone."""
-    listed = json.loads(subprocess.run([ROBUSTNESS, *quick, "list"], capture_output=True, text=True, check=True).stdout)
+    listed = json.loads(subprocess.run([PROGRAM, "robustness", "list", *quick], capture_output=True, text=True, check=True).stdout)
     cases, models = {c["case"]: c["what"] for c in listed["cases"]}, listed["models"]
     cells = [(case, model) for case in cases for model in models]
     workers = Workers("robustness", len(cells))
@@ -170,8 +169,8 @@ def run_cells(out, quick):
 
 STUDIES = {
     "stability": (STABILITY, "one link only: 30 Hz, 38 ms; press_and_slide in one hand",
-                  lambda out, quick: run_one("stability_study", out, quick)),
-    "link": (LINK, "two delays, two losses", lambda out, quick: run_one("link_study", out, quick)),
+                  lambda out, quick: run_one("stability", out, quick)),
+    "link": (LINK, "two delays, two losses", lambda out, quick: run_one("link", out, quick)),
     "robustness": (ROBUST, "fewer cases, shorter motions", run_cells),
 }
 

@@ -1,4 +1,4 @@
-// `robustness_study`, the program behind `scripts/study robustness`: rows of a few quick cells.
+// `studies robustness`, behind `scripts/study robustness`: rows of a few quick cells.
 #include "tests/support/catch.h"
 #include "tests/support/programs.h"
 
@@ -7,7 +7,7 @@ using namespace palpate::test;
 namespace {
 
 nlohmann::json row_of(const std::string& name, const std::string& model) {
-  const auto row = nlohmann::json::parse(output_of("robustness_study", {"--quick", name, model}, 0, 60));
+  const auto row = nlohmann::json::parse(output_of("studies", {"robustness", "--quick", name, model}, 0, 60));
   CHECK(row.at("case") == name);
   CHECK(row.at("model") == model);
   CHECK(row.size() == 7);
@@ -71,9 +71,9 @@ TEST_CASE("robustness study: a refused cell says what to change, a flagged one h
 }
 
 TEST_CASE("robustness study: twice the same cell gives the same bytes, wrong use tells how, exit 2") {
-  const std::vector<std::string> cell{"--quick", "usual", "implicit neo_hookean"};
-  CHECK(output_of("robustness_study", cell, 0, 60) == output_of("robustness_study", cell, 0, 60));
-  CHECK(output_of("robustness_study", {"usual"}, 2).find("example:") != std::string::npos);
-  CHECK(output_of("robustness_study", {"usul", "rigid"}, 2).find("did you mean \"usual\"") !=
+  const std::vector<std::string> cell{"robustness", "--quick", "usual", "implicit neo_hookean"};
+  CHECK(output_of("studies", cell, 0, 60) == output_of("studies", cell, 0, 60));
+  CHECK(output_of("studies", {"robustness"}, 2).find("CASE") != std::string::npos);
+  CHECK(output_of("studies", {"robustness", "usul", "rigid"}, 2).find("did you mean \"usual\"") !=
         std::string::npos);
 }

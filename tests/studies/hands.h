@@ -32,7 +32,7 @@ struct Cell {
   double compliance = 1;  // the client is told so many times that of the tissue
 };
 
-struct Run {
+struct Outcome {
   bool stable = false;
   double force_error = 0;  // RMS, of the RMS of the true force
 };

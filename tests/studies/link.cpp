@@ -1,14 +1,9 @@
 /// How a session fares on bad networks, in virtual time: an organ palpated by the hand of its client file,
 /// over links that lose, delay, scatter and reorder datagrams; and the same for a night.
-#include <atomic>
-#include <cmath>
 #include <fmt/format.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <thread>
 
-#include "common/error.h"
-#include "common/report.h"
 #include "common/text.h"
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "haptic_client/session/client_config.h"
@@ -17,6 +12,7 @@
 #include "sim_server/serving/served_tools.h"
 #include "sim_server/serving/surface_pager.h"
 #include "sim_server/serving/tool_path.h"
+#include "tests/studies/studies.h"
 #include "tests/support/linked_pair.h"
 
 namespace palpate::studies {
@@ -84,13 +80,13 @@ class Bench {
         .page = [this](std::uint32_t number, protocol::SurfacePage& out) { return pager_.page(number, out); },
         .surface_version = pager_.state().version};
   }
-  /// The force, N, that an organ which follows the tool at once has for it there: what should be felt.
+  /// The force, N, that an organ which follows the tool at once has for it there: what should be rendered.
   /// Nothing of one that moves by itself.
   std::optional<Vec3> right_at(const protocol::ToolState& tool) {
     if (!right_) return {};
     return right_->step(sim::pose_of(tool), kTicksPerLook / kHaptic).force;
   }
-  /// The ticks that the organ answered since the last call, and the force there, N: what should be felt.
+  /// The ticks that the organ answered since the last call, and the force there, N: what should be rendered.
   std::vector<std::pair<std::uint64_t, Vec3>> take_answered() { return std::exchange(answered_, {}); }
 
  private:
@@ -103,30 +99,16 @@ class Bench {
   std::optional<sim::Simulation> right_;
 };
 
-/// Of the felt force against the right one where the hand is, relative to the RMS of the right one.
-class Errors {
- public:
-  void add(const Vec3& rendered, const Vec3& right) {
-    errors_.push_back((rendered - right).norm());
-    squares_ += right.squaredNorm();
-  }
-  Json percent() {
-    if (errors_.empty() || !(squares_ > 0)) return nullptr;
-    std::ranges::sort(errors_);
-    double sum = 0;
-    for (const double e : errors_) sum += e;
-    const double count = static_cast<double>(errors_.size()), rms = std::sqrt(squares_ / count);
-    const auto at = [&](double fraction) {
-      return errors_[static_cast<std::size_t>(fraction * (count - 1))];
-    };
-    return {{"mean", 100 * sum / count / rms},
-            {"p99", 100 * at(0.99) / rms},
-            {"max", 100 * errors_.back() / rms}};
-  }
+/// Rendered forces, tick by tick.
+struct Trace {
+  std::vector<Vec3> force;        // N
+  double most = 0, steepest = 0;  // N, N/s
 
- private:
-  std::vector<double> errors_;
-  double squares_ = 0;
+  void add(const Vec3& f) {
+    most = std::max(most, f.norm());
+    if (!force.empty()) steepest = std::max(steepest, kHaptic * (f - force.back()).norm());
+    force.push_back(f);
+  }
 };
 
 Json milliseconds(Time t) {
@@ -145,24 +127,22 @@ Json run(Bench& bench, const Conditions& c, int seed) {
                          .down = link,
                          .seed = static_cast<std::uint64_t>(seed),
                          .faults_end = kFaultsEnd});
-  std::vector<Vec3> rendered{Vec3::Zero()};  // by tick
+  Trace rendered;
+  rendered.add(Vec3::Zero());
   std::vector<std::pair<std::uint64_t, Vec3>> rights;
-  double most = 0, steepest = 0;
   while (pair.seconds() < kEnd) {
     const client::TickResult tick = pair.tick();
-    if (rendered.size() % kTicksPerLook == 0) {
-      if (const auto right = bench.right_at(tick.tool)) rights.emplace_back(rendered.size(), *right);
+    if (rendered.force.size() % kTicksPerLook == 0) {
+      if (const auto right = bench.right_at(tick.tool)) rights.emplace_back(rendered.force.size(), *right);
     }
-    rendered.push_back(tick.f_D);
-    most = std::max(most, rendered.back().norm());
-    steepest = std::max(steepest, kHaptic * (rendered.back() - *(rendered.end() - 2)).norm());
+    rendered.add(tick.f_D);
   }
-  Errors bad, healed;
+  ForceErrors bad, healed;
   if (rights.empty()) rights = bench.take_answered();
   for (const auto& [tick, right] : rights) {
     const double t = static_cast<double>(tick) / kHaptic;
-    if (t > kInitialize && t <= kFaultsEnd) bad.add(rendered[tick], right);
-    if (t > kHealed) healed.add(rendered[tick], right);
+    if (t > kInitialize && t <= kFaultsEnd) bad.add(rendered.force[tick], right);
+    if (t > kHealed) healed.add(rendered.force[tick], right);
   }
   const client::PipelineStats& stats = pipeline.stats();
   const bool itself = stats.published > stats.stepped_down;
@@ -180,8 +160,8 @@ Json run(Bench& bench, const Conditions& c, int seed) {
       {"age_ms_p99", 1e-6 * stats.age_ns.quantile(0.99)},
       {"error_percent", bad.percent()},
       {"healed_error_percent", healed.percent()},
-      {"largest_newton", most},
-      {"steepest_newton_s", steepest},
+      {"largest_newton", rendered.most},
+      {"steepest_newton_s", rendered.steepest},
       {"fault", static_cast<int>(pipeline.limiter().fault())}};
 }
 
@@ -209,18 +189,12 @@ std::vector<Conditions> conditions_of_scene() {
 Json study(const std::vector<Conditions>& all, const std::filesystem::path& scene,
            const std::filesystem::path& client) {
   std::vector<Json> rows(all.size());
-  std::atomic<std::size_t> next{0}, done{0};
-  {
-    std::vector<std::jthread> workers;
-    for (unsigned i = 0; i < std::max(1u, std::thread::hardware_concurrency()); ++i)
-      workers.emplace_back([&] {
-        for (std::size_t k; (k = next++) < all.size();) {
-          Bench bench(scene, client);  // anew: tissue may remember
-          rows[k] = run(bench, all[k], 1);
-          fmt::print(stderr, "links: {} of {}\n", ++done, all.size());
-        }
-      });
-  }
+  for_all(all.size(), "links", [&] {
+    return [&](std::size_t k) {
+      Bench bench(scene, client);  // anew: tissue may remember
+      rows[k] = run(bench, all[k], 1);
+    };
+  });
   return rows;
 }
 
@@ -246,29 +220,24 @@ Json night(int hours) {
   Json rows = Json::array();
   std::uint64_t ticks = 0;
   for (int hour = 0; hour < hours; ++hour) {
-    std::vector<Vec3> rendered;  // of this hour, by tick
+    Trace rendered;  // of this hour
     const std::uint64_t first = ticks;
-    double most = 0, steepest = 0;
     const std::uint64_t samples = pipeline.stats().samples;
     for (int second = 0; second < 3600; ++second) {
       if (second == 1800) pair.restart_server();
       if (second == 2700) pair.suspend(20, false);
-      for (int tick = 0; tick < static_cast<int>(kHaptic); ++tick) {
-        const Vec3 f_D = pair.tick().f_D;
-        most = std::max(most, f_D.norm());
-        if (!rendered.empty()) steepest = std::max(steepest, kHaptic * (f_D - rendered.back()).norm());
-        rendered.push_back(f_D);
-      }
+      for (int tick = 0; tick < static_cast<int>(kHaptic); ++tick) rendered.add(pair.tick().f_D);
     }
-    Errors errors;
+    ForceErrors errors;
     for (const auto& [tick, right] : bench.take_answered())
-      if (tick > first && tick - first <= rendered.size()) errors.add(rendered[tick - first - 1], right);
-    ticks += rendered.size();
+      if (tick > first && tick - first <= rendered.force.size())
+        errors.add(rendered.force[tick - first - 1], right);
+    ticks += rendered.force.size();
     rows.push_back({{"hour", hour + 1},
                     {"samples_a_second", static_cast<double>(pipeline.stats().samples - samples) / 3620},
                     {"error_percent", errors.percent()},
-                    {"largest_newton", most},
-                    {"steepest_newton_s", steepest},
+                    {"largest_newton", rendered.most},
+                    {"steepest_newton_s", rendered.steepest},
                     {"fault", static_cast<int>(pipeline.limiter().fault())},
                     {"resident_kb", resident_kb()}});
     fmt::print(stderr, "night: {} of {} hours\n", hour + 1, hours);
@@ -277,34 +246,37 @@ Json night(int hours) {
 }
 
 }  // namespace
-}  // namespace palpate::studies
 
-int main(int argc, char** argv) {
-  using namespace palpate;
-  const std::vector<std::string> arguments(argv + 1, argv + argc);
-  const auto first_is = [&](const char* option, std::size_t count) {
-    return arguments.size() == count && arguments[0] == option;
+Command link_command() {
+  struct Options {
+    std::filesystem::path out, client = kClient;
+    std::optional<std::filesystem::path> scene;
+    std::optional<int> night;
+    bool quick = false;
   };
-  const bool quick = first_is("--quick", 2), scene = first_is("--scene", 4);
-  const bool night = first_is("--night", 3) && std::atoi(arguments[1].c_str()) > 0;
-  if (!quick && !night && !scene && (arguments.size() != 1 || arguments[0].starts_with("-"))) {
-    fmt::print(
-        stderr,
-        "usage: link_study [--quick | --night HOURS | --scene SCENE CLIENT] DIR     example: link_study "
-        "--night 8 out/night\n");
-    return 2;
-  }
-  try {
-    const std::filesystem::path out = arguments.back();
-    std::filesystem::create_directories(out);
-    using namespace studies;
-    const Json rows = night   ? studies::night(std::atoi(arguments[1].c_str()))
-                      : scene ? study(conditions_of_scene(), arguments[1], arguments[2])
-                              : study(all_conditions(quick), kScene, kClient);
-    write_json(out / "summary.json", rows);
-  } catch (const Error& e) {
-    fmt::print(stderr, "link_study: {}\n", e.what());
-    return e.exit_code();
-  }
-  return 0;
+  const auto options = std::make_shared<Options>();
+  return {.name = "link",
+          .summary = "How a session fares on networks that lose, delay, scatter and reorder datagrams",
+          .footer = "Example: studies link out/night --night 8",
+          .options = {{"DIR", "Folder for summary.json", &options->out, {.required = true}},
+                      quick_option(options->quick),
+                      {"--night",
+                       "Hours of a session on one link instead",
+                       &options->night,
+                       {.within = Bounds{1, 1000}}},
+                      {"--scene", "Scene of another organ, on six links", &options->scene},
+                      {"--client",
+                       "Client file of the hand that palpates it",
+                       &options->client,
+                       {.needs = "--scene"}}},
+          .run = [options] {
+            std::filesystem::create_directories(options->out);
+            write_json(options->out / "summary.json",
+                       options->night   ? night(*options->night)
+                       : options->scene ? study(conditions_of_scene(), *options->scene, options->client)
+                                        : study(all_conditions(options->quick), kScene, kClient));
+            return 0;
+          }};
 }
+
+}  // namespace palpate::studies

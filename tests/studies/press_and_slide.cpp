@@ -7,6 +7,7 @@
 #include "sim_server/models/deformation_models.h"
 #include "sim_server/tissue/contact_instants.h"
 #include "sim_server/tissue/rayleigh_damping.h"
+#include "tests/studies/studies.h"
 #include "tests/support/random.h"
 #include "tests/support/tool_inputs.h"
 
@@ -202,7 +203,7 @@ double PressAndSlide::direct_motion(const Person& person, const Which& which) {
   return found->second = quick_motion(path);
 }
 
-Run PressAndSlide::run(const Cell& cell, double stiffness, int seed, bool compare) {
+Outcome PressAndSlide::run(const Cell& cell, double stiffness, int seed, bool compare) {
   const Which which{cell.world, stiffness};
   const double direct = direct_motion(*cell.person, which);
   Block& block = block_of(which);
@@ -210,19 +211,16 @@ Run PressAndSlide::run(const Cell& cell, double stiffness, int seed, bool compar
   client::Pipeline pipeline = pipeline_of(cell);
   test::ClosedLoop loop(hand.encoder, pipeline, block.server(cell.compliance), loop_of(cell.link, seed));
   std::vector<Vec3> path;
-  double error2 = 0, force2 = 0;
+  ForceErrors errors;
   while (loop.seconds() < kEnd) {
     const Vec3 rendered = loop.tick().f_D;
     path.push_back(hand.encoder.place());
     if (loop.seconds() > kSettled && thrown(path.back()[1], block.depth)) return {};
     if (!compare || block.swings || path.size() % kCompared != 0 || loop.seconds() < kWatch) continue;
-    const Vec3 right = block.simulation->linearise(0, path.back(), nullptr).f_W;
-    error2 += (rendered - right).squaredNorm();
-    force2 += right.squaredNorm();
+    errors.add(rendered, block.simulation->linearise(0, path.back(), nullptr).f_W);
   }
   const bool quiet = quick_motion(path) <= kTimes * direct + kMore;
-  return {quiet && pipeline.limiter().fault() == client::Fault::kNone,
-          force2 > 0 ? std::sqrt(error2 / force2) : 0};
+  return {quiet && pipeline.limiter().fault() == client::Fault::kNone, errors.rms()};
 }
 
 double PressAndSlide::threshold(const Cell& cell) {

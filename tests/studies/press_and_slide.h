@@ -27,7 +27,7 @@ class PressAndSlide {
 
   /// Whether that is stable; the force error only if it is to `compare`, which takes longer, of tissue at
   /// rest.
-  Run run(const Cell& cell, double stiffness, int seed, bool compare);
+  Outcome run(const Cell& cell, double stiffness, int seed, bool compare);
   /// The stiffest of `stiffnesses()` up to which all seeds are stable; 0: none.
   double threshold(const Cell& cell);
 

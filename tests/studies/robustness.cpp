@@ -1,26 +1,20 @@
-// One cell of the robustness study: an extreme scene with one model. Run by `scripts/study robustness`; the
-// same arguments give the same bytes.
+// One cell of the robustness study: an extreme scene with one model.
 #include "tests/studies/robustness.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/core.h>
+#include <memory>
 #include <nlohmann/json.hpp>
 
-#include "common/error.h"
-#include "common/log.h"
 #include "common/report.h"
 #include "common/text.h"
+#include "tests/studies/studies.h"
 
 using namespace palpate;
 using namespace palpate::studies;
 
 namespace {
-
-constexpr const char* kUsage =
-    "usage: robustness_study [--quick] list          a line for each case: its name, and what it is\n"
-    "       robustness_study [--quick] CASE MODEL    runs one cell and prints its row as JSON\n"
-    "example: robustness_study teleported \"implicit neo_hookean\"\n";
 
 /// To three digits: the rest is rounding, which other processors may do otherwise.
 Json rounded(const std::optional<double>& value) {
@@ -38,8 +32,8 @@ void list(bool quick) {
 }
 
 void run(const std::string& name, const std::string& model, bool quick) {
-  const Case& row = find_row(cases(), name, "case", "robustness_study");
-  const Column& column = find_row(columns(), model, "model", "robustness_study");
+  const Case& row = find_row(cases(), name, "case", "robustness");
+  const Column& column = find_row(columns(), model, "model", "robustness");
   const Verdict verdict = row.run(row, column, quick);
   const Json json{{"case", row.name},
                   {"model", column.name},
@@ -53,29 +47,26 @@ void run(const std::string& name, const std::string& model, bool quick) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  std::vector<std::string> arguments(argv + 1, argv + argc);
-  const bool quick = !arguments.empty() && arguments.front() == "--quick";
-  if (quick) arguments.erase(arguments.begin());
-  const bool lists = arguments == std::vector<std::string>{"list"};
-  if (!arguments.empty() && (arguments.front() == "-h" || arguments.front() == "--help")) {
-    fmt::print("{}", kUsage);
-    return 0;
-  }
-  if (!lists && arguments.size() != 2) {
-    fmt::print(stderr, "{}", kUsage);
-    return 2;
-  }
-  log::start("robustness_study");
-  try {
-    if (lists) {
-      list(quick);
-    } else {
-      run(arguments[0], arguments[1], quick);
-    }
-  } catch (const Error& e) {
-    fmt::print(stderr, "robustness_study: {}\n", e.what());
-    return e.exit_code();
-  }
-  return 0;
+Command palpate::studies::robustness_command() {
+  struct Options {
+    std::string name, model;
+    bool quick = false;
+  };
+  const auto options = std::make_shared<Options>();
+  return {.name = "robustness",
+          .summary = "Runs one cell, an extreme scene with one model, and prints its row as JSON",
+          .footer = "Example: studies robustness teleported \"implicit neo_hookean\"",
+          .options = {{"CASE",
+                       "Name of a case; \"list\": prints cases and models",
+                       &options->name,
+                       {.required = true}},
+                      {"MODEL", "Deformation model, with its law where it takes several", &options->model},
+                      quick_option(options->quick)},
+          .run = [options] {
+            if (options->name == "list")
+              list(options->quick);
+            else
+              run(options->name, options->model, options->quick);
+            return 0;
+          }};
 }

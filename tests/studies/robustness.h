@@ -2,6 +2,7 @@
 /// Scenes at the extremes, with every model: what a cell of `scripts/study robustness` runs, and its verdict.
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -123,27 +124,6 @@ Path stroke(const Vec3& from, const Vec3& to, double speed);
 /// The lines of a [[tool]].
 std::string tool(double radius, const std::string& more = "");
 
-/// What a run showed.
-struct Run {
-  /// The forces on the tools at a step while they are there, N.
-  struct Held {
-    double t;  // s
-    std::vector<Vec3> force;
-    bool flagged;
-  };
-  std::vector<Held> held;  // from the first step until all are taken away
-  double arrived = 0;      // s: the last tool
-  std::vector<Vec3> last;  // the force on each tool while it was there, N
-  double max_newton = 0;   // of all steps
-  double wildest = 0;      // of those that were not flagged
-  int steps = 0, flagged = 0;
-  int phase = 0;                 // of `Trial::phases`
-  bool pressed_flagged = false;  // when `last` was felt
-  bool finite = true, ends_flagged = false;
-  bool locks = false;  // the program warned at the start that its elements lock
-  double off = 0;      // from where the surface began, when the tools have been away, m
-};
-
 /// Hands the simulation of a scene to `use`. Throws `Error` where the program refuses it, with the same words
 /// every time.
 void with_simulation(const SceneFile& file, const sim::TetMesh& mesh, const Column& column,
@@ -152,13 +132,6 @@ void with_simulation(const SceneFile& file, const sim::TetMesh& mesh, const Colu
 /// The motion `fraction` of a step later.
 std::vector<Path> later(std::vector<Path> paths, double fraction, double rate_hz);
 
-/// Follows `paths`; then, where `separate`, as long again without tools. Throws `Error` where the program
-/// refuses.
-Run follow(const Trial& trial, const Column& column, const std::vector<Path>& paths, bool separate);
-
-/// What is held against the runs of a trial, one for each phase: the worst of them.
-Verdict judge(const std::vector<Run>& runs, const Trial& trial, const Column& column);
-
 // Bodies without tools (`robustness_bodies.cpp`).
 Verdict run_scattered(const Case& row, const Column& column, bool quick);
 Verdict run_collapsed_to_point(const Case& row, const Column& column, bool quick);
@@ -166,5 +139,146 @@ Verdict run_collapsed_to_plane(const Case& row, const Column& column, bool quick
 /// Run as a press where the model refuses a body that nothing holds, or as one that flies.
 Verdict run_free_body(const Case& row, const Column& column, bool quick);
 Verdict run_undamped(const Case& row, const Column& column, bool quick);
+
+// Tools on a body, watched step by step: those of a trial, and those that turn, rub and grasp on supports
+// that rest or move; and what is held against that: another world of the same model, a closed form, or an
+// equilibrium found without any contact.
+
+constexpr double kRest = 1.0;  // s, after all motion
+
+/// A scene with its mesh, and the hands that hold its tools.
+struct World {
+  SceneFile file = {};
+  sim::TetMesh mesh = usual_block();
+  std::function<std::vector<sim::ToolInput>(double t)> hands = {};  // t in s
+  double seconds = 2;
+  bool tells_path = true;  // where the tools were within each step
+};
+
+/// What the tools felt in one step.
+struct Rendered {
+  double t;  // s
+  std::vector<ToolPose> poses;
+  std::vector<Vec3> force, torque;  // of each tool, N, N m
+  bool flagged;
+};
+
+/// All of it, up to the first number that is not finite.
+struct Watched {
+  std::vector<Rendered> steps;
+  std::size_t held = 0;  // steps before the first tool was taken away
+  int flagged = 0;
+  bool finite = true;
+  double max_newton = 0;          // of all steps
+  double max_trusted_newton = 0;  // of steps that were not flagged
+  double wildest = 0;             // of forces that were not flagged
+  double off = 0;                 // in the end, of the surface from where it began, m
+  bool locks = false;             // the program warned at the start that its elements lock
+};
+Watched watch(const World& world, const Column& column);
+
+/// A trial, watched.
+struct Run : Watched {
+  double arrived = 0;  // s: the last tool
+  int phase = 0;       // of `Trial::phases`
+
+  std::span<const Rendered> pressed() const { return std::span(steps).first(held); }
+  const Rendered& last() const { return steps[held - 1]; }
+  bool ends_flagged() const { return steps.back().flagged; }
+};
+/// Follows `paths`; then, where `separate`, as long again without tools. Throws `Error` where the program
+/// refuses.
+Run follow(const Trial& trial, const Column& column, const std::vector<Path>& paths, bool separate);
+
+/// What is held against the runs of a trial, one for each phase: the worst of them.
+Verdict judge(const std::vector<Run>& runs, const Trial& trial, const Column& column);
+
+/// Vectors of one step that should be those of another: forces, torques.
+using Vectors = std::vector<Vec3>;
+/// What should be felt at a step, or nothing, where there is nothing to tell of it.
+using Expected = std::function<std::optional<Vectors>(std::size_t step)>;
+/// What of a step is told.
+using Published = std::function<Vectors(const Rendered&)>;
+
+/// The force on the first tool; with its torque.
+Vectors force_of(const Rendered& rendered);
+Vectors force_and_torque_of(const Rendered& rendered);
+
+/// The steps of another world from `from` (s) on, but those it flagged.
+Expected as_in(Watched other, Published published, double from = 0);
+
+/// In the last `seconds` of that world.
+Expected at_the_end(const World& world, Vectors right, double seconds = 0.5 * kRest);
+
+/// Stable, flagged or exploded: before it is held against anything.
+Verdict verdict_of(const Watched& watched, const std::string& reference);
+
+/// The worst of all steps that were not flagged, each vector as a share of the largest that was expected of
+/// its kind: more than `bound` is wrong.
+Verdict compare(const Watched& watched, const Published& published, const Expected& expected, double bound,
+                const std::string& reference);
+
+/// Free surface vertices around a place, all moved alike.
+struct Gripped {
+  Vec3 place;
+  double reach;  // m
+  Vec3 moved;    // m
+};
+/// What tools feel that move these and let the rest of the body, of any law, come to equilibrium, N.
+Vectors reactions(const World& world, const Column& column, const std::vector<Gripped>& grips);
+
+/// The work that tools do on the hands that hold them, by the trapezoidal rule in places and turns: J; and
+/// of all steps by its size.
+struct Work {
+  double sum = 0, size = 0;
+};
+Work work_of(const Watched& watched);
+
+/// How extreme.
+struct Setting {
+  std::string name = {}, what = {};
+  double modulus = 1e4, nu = 0.45, rate_hz = 30;  // Pa, -, Hz
+  double thickness = 0.015, depth = 0.002;        // m, of the block and of the press
+  double speed = 0.02;                            // m/s
+  double friction = 0.3;                          // where there is any
+};
+/// The usual block so, top at y = 0, its bottom held; no hands yet.
+World block_of(const Setting& setting);
+
+/// Straight from place to place at an even speed (m/s).
+struct Direction {
+  std::vector<Vec3> places;
+  double speed;
+
+  double seconds() const;
+  Vec3 at(double t) const;
+};
+constexpr double kToolRadius = 0.004;  // m, of most tools
+/// Down from 2 mm above the block, then along.
+Direction press_and_draw(const Setting& setting, const Vec3& along);
+/// That block under one tool that goes that way and rests.
+World under_tool(const Setting& setting, const Direction& way);
+/// One tool there, or lifted.
+sim::ToolInput at(const Vec3& p, const Quat& q = Quat::Identity());
+
+/// Worlds that differ by rounding, by what Newton may leave: of the force.
+constexpr double kSame = 1e-3;
+
+/// What a row does with one setting and one model.
+using Judge = Verdict (*)(const Setting&, const Column&);
+/// Rows of these settings, the first of them also in a quick study where `quick`; their names and words are
+/// added to those of the row.
+void add_rows(std::vector<Case>& rows, const std::string& name, const std::string& what, Judge judge,
+              const std::vector<Setting>& settings, bool quick = false);
+
+/// Jaws, friction and work (`robustness_grips.cpp`); two tools on the same tissue
+/// (`robustness_two_tools.cpp`); supports that move (`robustness_supports.cpp`).
+void add_grips(std::vector<Case>& rows);
+void add_two_tools(std::vector<Case>& rows);
+void add_supports(std::vector<Case>& rows);
+
+/// A row: refused where `judge` throws `Error`.
+Case world_row(const std::string& name, const std::string& what, bool quick,
+               std::function<Verdict(const Column& column)> judge);
 
 }  // namespace palpate::studies

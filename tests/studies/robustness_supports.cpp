@@ -4,7 +4,7 @@
 #include <fmt/core.h>
 #include <numbers>
 
-#include "tests/studies/robustness_watch.h"
+#include "tests/studies/robustness.h"
 
 namespace palpate::studies {
 namespace {
@@ -50,12 +50,10 @@ std::optional<Verdict> inapplicable(const Column& column) {
 
 /// A capsule that rubs, pressed and drawn.
 World pressed(const Setting& setting, double seconds) {
-  World world = block_of(setting);
-  const Direction way = press_and_draw(setting, Vec3(0.002, 0, 0));
+  World world = under_tool(setting, press_and_draw(setting, Vec3(0.002, 0, 0)));
   world.seconds = seconds;
   world.file.tools = {
       tool(kToolRadius, fmt::format("shape = \"capsule\"\nlength = 0.008\nfriction = {}", setting.friction))};
-  world.hands = [way](double t) { return std::vector<ToolInput>{at(way.at(t))}; };
   return world;
 }
 

@@ -28,55 +28,6 @@ Vec3 place_at(const Path& path, double t) {
   return from.place + (t - from.t) / (next->t - from.t) * (next->place - from.place);
 }
 
-class Watch {
- public:
-  Watch(Simulation& simulation, double rate_hz) : simulation_(simulation), dt_(1 / rate_hz) {
-    began_.assign(simulation.positions().begin(), simulation.positions().end());
-  }
-
-  Run follow(const std::vector<Path>& paths, double seconds, bool separate) {
-    const int steps = static_cast<int>(std::lround(seconds / dt_));
-    std::vector<ToolInput> inputs(paths.size());
-    for (const Path& path : paths) run_.arrived = std::max(run_.arrived, path.back().t);
-    for (int i = 1; i <= steps && run_.finite; ++i) {
-      for (std::size_t k = 0; k < paths.size(); ++k) inputs[k].pose = place_at(paths[k], i * dt_);
-      see(simulation_.step(inputs, dt_));
-      run_.held.push_back({i * dt_, rendered_, run_.ends_flagged});
-    }
-    run_.last = rendered_;
-    run_.pressed_flagged = run_.ends_flagged;
-    if (!separate) return run_;
-    for (ToolInput& input : inputs) input.pose.reset();
-    for (int i = 0; i < steps && run_.finite; ++i) see(simulation_.step(inputs, dt_));
-    for (std::size_t v = 0; v < began_.size(); ++v)
-      run_.off = std::max(run_.off, (simulation_.positions()[v] - began_[v]).norm());
-    return run_;
-  }
-
- private:
-  void see(std::span<const ToolAnswer> forces) {
-    ++run_.steps;
-    run_.ends_flagged = false;
-    rendered_.clear();
-    for (const ToolForce& force : forces) {
-      rendered_.push_back(force.force);
-      const double newton = force.force.norm();
-      run_.finite = run_.finite && std::isfinite(newton) && force.tangent.allFinite();
-      run_.max_newton = std::max(run_.max_newton, newton);
-      if (!force.flagged) run_.wildest = std::max(run_.wildest, newton);
-      run_.ends_flagged = run_.ends_flagged || force.flagged;
-    }
-    run_.ends_flagged = run_.ends_flagged || !simulation_.balanced();
-    run_.flagged += run_.ends_flagged ? 1 : 0;
-    for (const Vec3& x : simulation_.positions()) run_.finite = run_.finite && x.allFinite();
-  }
-
-  Simulation& simulation_;
-  double dt_;
-  std::vector<Vec3> began_, rendered_;
-  Run run_;
-};
-
 }  // namespace
 
 const std::vector<Column>& columns() {
@@ -158,11 +109,18 @@ void with_simulation(const SceneFile& file, const TetMesh& body, const Column& c
 }
 
 Run follow(const Trial& trial, const Column& column, const std::vector<Path>& paths, bool separate) {
+  const double steps = std::round(trial.seconds * trial.file.rate_hz);
+  World world{trial.file, trial.mesh, {}, (separate ? 2 : 1) * steps / trial.file.rate_hz, false};
+  world.hands = [&](double t) {
+    std::vector<ToolInput> inputs(paths.size());
+    const bool are_there = t * trial.file.rate_hz < steps + 0.5;
+    for (std::size_t k = 0; k < paths.size() && are_there; ++k) inputs[k].pose = place_at(paths[k], t);
+    return inputs;
+  };
   Run run;
-  with_simulation(trial.file, trial.mesh, column, [&](const Scene& scene, Simulation& simulation) {
-    run = Watch(simulation, trial.file.rate_hz).follow(paths, trial.seconds, separate);
-    run.locks = column.row->deforms() && scene.material && scene.material->locks();
-  });
+  static_cast<Watched&>(run) = watch(world, column);
+  for (const Path& path : paths) run.arrived = std::max(run.arrived, path.back().t);
+  if (!separate) run.off = 0;
   return run;
 }
 

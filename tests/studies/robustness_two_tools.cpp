@@ -6,7 +6,7 @@
 #include <fmt/core.h>
 
 #include "sim_server/mesh/shapes.h"
-#include "tests/studies/robustness_watch.h"
+#include "tests/studies/robustness.h"
 #include "tests/support/solids.h"
 
 namespace palpate::studies {
@@ -74,9 +74,8 @@ struct Pinch {
 
 /// No tool pulls, both press alike, and nothing is left in the end.
 Verdict judge_pinch(const Watched& watched) {
-  Verdict verdict{
-      "stable", "", {}, watched.max_newton, "forces that are opposite, and none when both are gone"};
-  if (!watched.finite) return {"exploded", "a force that is not finite", {}, {}, verdict.reference};
+  Verdict verdict = verdict_of(watched, "forces that are opposite, and none when both are gone");
+  if (!watched.finite) return verdict;
   double largest = 0, off = 0, pull = 0;
   for (const Rendered& rendered : watched.steps) {
     if (rendered.flagged) continue;
@@ -84,10 +83,6 @@ Verdict judge_pinch(const Watched& watched) {
     pull = std::max({pull, -upper, lower});
     largest = std::max({largest, std::abs(upper), std::abs(lower)});
     off = std::max(off, std::abs(upper + lower));
-  }
-  if (watched.flagged > 0) {
-    verdict.outcome = "flagged";
-    verdict.reason = fmt::format("{} of {} steps flagged", watched.flagged, watched.steps.size());
   }
   const auto wrong = [&](const std::string& reason) {
     verdict.outcome = "wrong";
@@ -121,14 +116,13 @@ Verdict grasp_and_press(const Setting& setting, const Column& column) {
   const Direction down{
       {beside + Vec3(0, kToolRadius + kClear, 0), beside + Vec3(0, kToolRadius - setting.depth, 0)},
       setting.speed};
-  World held = block_of(setting);
-  held.seconds = down.seconds() + 2 * kRest;
+  World held = under_tool(setting, down);
+  held.seconds += kRest;
   World gripped = held;
   held.file.fixed +=
       "[[fixed]]\nbox = [[-0.0101, -1e-6, -1e-6], [0.0001, 1e-6, 1e-6]]\n"
       "[[fixed]]\nbox = [[-0.0051, -1e-6, -0.0051], [-0.0049, 1e-6, 0.0051]]\n";
   held.file.tools = {tool(kToolRadius)};
-  held.hands = [down](double t) { return std::vector<ToolInput>{at(down.at(t))}; };
   gripped.file.tools = {tool(kToolRadius),
                         tool(0.005, fmt::format("grasp_place = [{}, {}, {}]", place[0], place[1], place[2]))};
   gripped.hands = [=](double t) { return std::vector<ToolInput>{at(down.at(t)), at(place)}; };

@@ -85,7 +85,7 @@ AtRest closed_form(const std::string& what, std::size_t tools, const Range& rang
 /// From the run of a truth.
 AtRest forces_of(const Run& run, const Trial& trial) {
   AtRest expected{"", {}, {}, trial.times * trial.most * run.max_newton};
-  for (const Vec3& force : run.last) {
+  for (const Vec3& force : run.last().force) {
     const double newton = trial.times * force.norm();
     expected.newton.push_back({newton, trial.most * newton});
     if (trial.most == 1) expected.force.push_back(trial.times * force);
@@ -111,9 +111,10 @@ AtRest expected_of(const Trial& trial, const Column& column) {
   const Run run = truth.follow(truth.trial.paths);
   AtRest expected = forces_of(run, trial);
   expected.what = truth.what;
-  expected.settled = run.finite && !run.pressed_flagged && !(trial.path_matters && run.flagged > 0);
+  expected.settled = run.finite && !run.last().flagged && !(trial.path_matters && run.flagged > 0);
   if (!expected.settled) expected.what += ": flagged, so that there is no error to tell";
-  if (run.flagged > 0) expected.what += fmt::format(" (flagged in {} of {} steps)", run.flagged, run.steps);
+  if (run.flagged > 0)
+    expected.what += fmt::format(" (flagged in {} of {} steps)", run.flagged, run.steps.size());
   return expected;
 }
 
@@ -144,7 +145,7 @@ std::optional<AtRest> another_rest(const Run& run, const Trial& trial, const Col
       }
       const Run other = truth.follow(paths);
       AtRest there = forces_of(other, trial);
-      if (other.pressed_flagged || error_of(run.last, there) > kSamePlace) continue;
+      if (other.last().flagged || error_of(run.last().force, there) > kSamePlace) continue;
       there.what = fmt::format(
           "the tools have more than one place to rest, and this is another: {} ends there, too, where they "
           "come from {} mm aside ({}{})",
@@ -157,9 +158,9 @@ std::optional<AtRest> another_rest(const Run& run, const Trial& trial, const Col
 
 /// What is wrong at some time while the tools are there, unflagged; nothing: all is well.
 std::string wrong_on_the_way(const Run& run, const Trial& trial, const AtRest& expected) {
-  const double until = run.held.back().t;
+  const double until = run.last().t;
   const double scale = std::max(expected.newton.front().least, kSmallest);
-  for (const Run::Held& held : run.held) {
+  for (const Rendered& held : run.pressed()) {
     if (held.flagged) continue;
     for (std::size_t k = 0; k < held.force.size(); ++k) {
       const double inward = -held.force[k].dot(trial.outward[k]);
@@ -182,18 +183,18 @@ std::string wrong_on_the_way(const Run& run, const Trial& trial, const AtRest& e
 /// finds something else.
 std::string wrong_between(const Run& run, const Trial& trial, const AtRest& expected) {
   if (!expected.slower) return {};
-  const std::vector<Run::Held>& right = expected.slower->held;
+  const std::span<const Rendered> found = run.pressed(), right = expected.slower->pressed();
   const double scale = std::max(expected.newton.front().least, kSmallest);
-  for (std::size_t i = 0; i < run.held.size(); ++i) {
+  for (std::size_t i = 0; i < found.size(); ++i) {
     // A step of the slower run ends where this one does, whatever the phase.
     const auto at = static_cast<int>(i + 1) * kSlower - run.phase * kSlower / trial.phases - 1;
-    if (at < 0 || at >= static_cast<int>(right.size()) || run.held[i].flagged || right[at].flagged) continue;
+    if (at < 0 || at >= static_cast<int>(right.size()) || found[i].flagged || right[at].flagged) continue;
     for (std::size_t k = 0; k < right[at].force.size(); ++k) {
-      const double off = (run.held[i].force[k] - right[at].force[k]).norm() / scale;
+      const double off = (found[i].force[k] - right[at].force[k]).norm() / scale;
       if (off > trial.bound)
         return fmt::format(
             "{:.3g} N at {:.2f} s, where {} times as many steps there give {:.3g} N, and not flagged",
-            run.held[i].force[k].norm(), run.held[i].t, kSlower, right[at].force[k].norm());
+            found[i].force[k].norm(), found[i].t, kSlower, right[at].force[k].norm());
     }
   }
   return {};
@@ -204,7 +205,7 @@ std::string wrong_of(const Run& run, const Trial& trial, const AtRest& expected)
   if (run.wildest > kAbsurd * expected.most + kSmallest)
     return fmt::format("{:.3g} N without a flag; the reference has {:.3g} N at most", run.wildest,
                        expected.most);
-  if (run.off > kReturned * trial.depth && !run.ends_flagged)
+  if (run.off > kReturned * trial.depth && !run.ends_flagged())
     return fmt::format("let go, its surface stays up to {:.3g} mm off, and not flagged", 1e3 * run.off);
   const std::string wrong = wrong_on_the_way(run, trial, expected);
   return wrong.empty() ? wrong_between(run, trial, expected) : wrong;
@@ -214,11 +215,11 @@ Verdict judge_one(const Run& run, const Trial& trial, const Column& column, cons
   Verdict verdict{"stable", "", {}, run.max_newton, expected.what};
   if (!run.finite)
     return {"exploded", "a force, tangent or position that is not finite", {}, {}, expected.what};
-  if (expected.settled) verdict.error_percent = 100 * error_of(run.last, expected);
+  if (expected.settled) verdict.error_percent = 100 * error_of(run.last().force, expected);
   std::optional<AtRest> remote;
   const double error = verdict.error_percent.value_or(0) / 100;
   const double report_why = trial.bound == kBound ? kReportWhy : trial.bound;
-  if (!run.pressed_flagged && error > report_why && error < trial.other_rest && column.row->deforms() &&
+  if (!run.last().flagged && error > report_why && error < trial.other_rest && column.row->deforms() &&
       !trial.rendered)
     remote = another_rest(run, trial, column);
   if (remote) remote->most = expected.most;
@@ -231,9 +232,9 @@ Verdict judge_one(const Run& run, const Trial& trial, const Column& column, cons
     verdict.reason = wrong;
   } else if (run.flagged > 0) {
     verdict.outcome = "flagged";
-    verdict.reason =
-        fmt::format("{} of {} steps flagged, answered with what was found so far; {}", run.flagged, run.steps,
-                    run.pressed_flagged ? "the force at the end, too" : "the force at the end was not");
+    verdict.reason = fmt::format(
+        "{} of {} steps flagged, answered with what was found so far; {}", run.flagged, run.steps.size(),
+        run.last().flagged ? "the force at the end, too" : "the force at the end was not");
   }
   if (remote) verdict.reason += (verdict.reason.empty() ? "" : "; ") + remote->what;
   return verdict;

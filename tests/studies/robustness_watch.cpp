@@ -1,6 +1,4 @@
 // Tools that turn, rub and grasp, watched and compared.
-#include "tests/studies/robustness_watch.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -11,6 +9,7 @@
 #include "sim_server/mesh/surface.h"
 #include "sim_server/scene/scene.h"
 #include "sim_server/solvers/equilibrium.h"
+#include "tests/studies/robustness.h"
 #include "tests/support/solids.h"
 
 namespace palpate::studies {
@@ -43,10 +42,12 @@ void see_step(const Simulation& simulation, std::span<const ToolInput> inputs,
     rendered.flagged = rendered.flagged || answer.flagged;
     watched.finite =
         watched.finite && answer.force.allFinite() && answer.torque.allFinite() && answer.tangent.allFinite();
+    watched.max_newton = std::max(watched.max_newton, answer.force.norm());
+    if (!answer.flagged) watched.wildest = std::max(watched.wildest, answer.force.norm());
   }
   for (const Vec3& x : simulation.positions()) watched.finite = watched.finite && x.allFinite();
   for (const Vec3& force : rendered.force) {
-    if (!rendered.flagged) watched.max_newton = std::max(watched.max_newton, force.norm());
+    if (!rendered.flagged) watched.max_trusted_newton = std::max(watched.max_trusted_newton, force.norm());
   }
   watched.flagged += rendered.flagged ? 1 : 0;
   watched.steps.push_back(std::move(rendered));
@@ -90,20 +91,29 @@ Direction press_and_draw(const Setting& setting, const Vec3& along) {
   return {{above, in, in + along}, setting.speed};
 }
 
+World under_tool(const Setting& setting, const Direction& way) {
+  World world = block_of(setting);
+  world.seconds = way.seconds() + kRest;
+  world.hands = [way](double t) { return std::vector<ToolInput>{at(way.at(t))}; };
+  return world;
+}
+
 ToolInput at(const Vec3& p, const Quat& q) {
   return {.pose = ToolPose(p, q)};
 }
 
 Watched watch(const World& world, const Column& column) {
   Watched watched;
-  with_simulation(world.file, world.mesh, column, [&](const Scene&, Simulation& simulation) {
+  with_simulation(world.file, world.mesh, column, [&](const Scene& scene, Simulation& simulation) {
+    watched.locks = column.row->deforms() && scene.material && scene.material->locks();
     const std::vector<Vec3> began(simulation.positions().begin(), simulation.positions().end());
     const double dt = 1 / world.file.rate_hz;
     const int steps = static_cast<int>(std::lround(world.seconds / dt));
     for (int i = 1; i <= steps && watched.finite; ++i) {
       std::vector<ToolInput> inputs = world.hands(i * dt);
-      const auto paths = paths_to(world, i * dt, dt, simulation.instants());
+      const auto paths = paths_to(world, i * dt, dt, world.tells_path ? simulation.instants() : 1);
       for (std::size_t tool = 0; tool < inputs.size(); ++tool) inputs[tool].path = paths[tool];
+      watched.held += watched.held + 1 == static_cast<std::size_t>(i) && inputs.front().pose ? 1 : 0;
       see_step(simulation, inputs, simulation.step(inputs, dt), i * dt, watched);
     }
     for (std::size_t v = 0; v < began.size(); ++v)
@@ -136,11 +146,18 @@ Expected at_the_end(const World& world, Vectors right, double seconds) {
   };
 }
 
-Verdict compare(const Watched& watched, const Published& published, const Expected& expected, double bound,
-                const std::string& reference) {
-  Verdict verdict{"stable", "", {}, watched.max_newton, reference};
+Verdict verdict_of(const Watched& watched, const std::string& reference) {
   if (!watched.finite)
     return {"exploded", "a force, torque, tangent or position that is not finite", {}, {}, reference};
+  if (watched.flagged == 0) return {"stable", "", {}, watched.max_trusted_newton, reference};
+  const std::string reason = fmt::format("{} of {} steps flagged", watched.flagged, watched.steps.size());
+  return {"flagged", reason, {}, watched.max_trusted_newton, reference};
+}
+
+Verdict compare(const Watched& watched, const Published& published, const Expected& expected, double bound,
+                const std::string& reference) {
+  Verdict verdict = verdict_of(watched, reference);
+  if (!watched.finite) return verdict;
   Vectors off, scale;
   std::vector<std::size_t> worst;
   for (std::size_t i = 0; i < watched.steps.size(); ++i) {
@@ -166,10 +183,6 @@ Verdict compare(const Watched& watched, const Published& published, const Expect
         fmt::format("{} off by {:.2g} % of the largest, {:.3g}, at {:.3f} s, and not flagged",
                     k == 0 ? "force" : "torque", 100 * error, scale[k].norm(), watched.steps[worst[k]].t);
     return verdict;
-  }
-  if (watched.flagged > 0) {
-    verdict.outcome = "flagged";
-    verdict.reason = fmt::format("{} of {} steps flagged", watched.flagged, watched.steps.size());
   }
   return verdict;
 }

@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 #include <numbers>
 
-#include "tests/studies/robustness_watch.h"
+#include "tests/studies/robustness.h"
 #include "tests/support/solids.h"
 
 namespace palpate::studies {
@@ -32,9 +32,8 @@ ToolPose rolled_pose(const Direction& way, double t) {
 }
 
 World rolled(const Setting& setting, const std::string& more) {
-  World world = block_of(setting);
   const Direction way = press_and_draw(setting, Vec3(0.004, 0, -0.004));
-  world.seconds = way.seconds() + kRest;
+  World world = under_tool(setting, way);
   world.file.tools = {capsule(0.012, more)};
   world.hands = [way](double t) {
     const ToolPose pose = rolled_pose(way, t);
@@ -44,11 +43,9 @@ World rolled(const Setting& setting, const std::string& more) {
 }
 
 Verdict capsule_on_end(const Setting& setting, const Column& column) {
-  World ball = block_of(setting);
   const Direction way = press_and_draw(setting, Vec3(0.004, 0, 0));
-  ball.seconds = way.seconds() + kRest;
+  World ball = under_tool(setting, way);
   ball.file.tools = {tool(kToolRadius, "friction = 0.3")};
-  ball.hands = [way](double t) { return std::vector<ToolInput>{at(way.at(t))}; };
   World upright = ball;
   upright.file.tools = {capsule(0.05, "friction = 0.3\n")};
   upright.hands = [way](double t) { return std::vector<ToolInput>{at(way.at(t), kUpright)}; };
@@ -102,14 +99,12 @@ Verdict world_turned(const Setting& setting, const Column& column) {
 
 /// Spheres so near each other that what lies between them is 0.8 % of the radius further in.
 Verdict capsule_as_spheres(const Setting& setting, const Column& column) {
-  World world = block_of(setting);
   const Direction way = press_and_draw(setting, Vec3(0.002, 0, 0));
-  world.seconds = way.seconds() + kRest;
+  World world = under_tool(setting, way);
   constexpr int kSpheres = 8;
   const Vec3 apart(0, 0, 0.001);
   World spheres = world;
   world.file.tools = {capsule((kSpheres - 1) * apart[2])};
-  world.hands = [way](double t) { return std::vector<ToolInput>{at(way.at(t))}; };
   spheres.file.tools = std::vector<std::string>(kSpheres, tool(kToolRadius));
   spheres.hands = [way, apart](double t) {
     std::vector<ToolInput> inputs;
@@ -135,10 +130,7 @@ Verdict capsule_as_spheres(const Setting& setting, const Column& column) {
 }
 
 Verdict trocar_far(const Setting& setting, const Column& column) {
-  World ball = block_of(setting);
-  const Direction way = press_and_draw(setting, Vec3(0.004, 0, 0));
-  ball.seconds = way.seconds() + kRest;
-  ball.hands = [way](double t) { return std::vector<ToolInput>{at(way.at(t))}; };
+  const World ball = under_tool(setting, press_and_draw(setting, Vec3(0.004, 0, 0)));
   World trocar = ball;
   trocar.file.tools = {tool(kToolRadius, "shape = \"trocar\"\npivot = [0, 10, 0]\nshaft_radius = 0.004")};
   return compare(watch(trocar, column), force_of, as_in(watch(ball, column), force_of), kSame,
@@ -154,13 +146,11 @@ Direction lever(const Setting& setting) {
 }
 
 Verdict trocar_lever(const Setting& setting, const Column& column) {
-  World trocar = block_of(setting);
   const Direction way = lever(setting);
-  trocar.seconds = way.seconds() + kRest;
+  World trocar = under_tool(setting, way);
   trocar.file.tools = {
       tool(kToolRadius, fmt::format("shape = \"trocar\"\npivot = [{}, {}, {}]\nshaft_radius = {}", kPivot[0],
                                     kPivot[1], kPivot[2], kToolRadius))};
-  trocar.hands = [way](double t) { return std::vector<ToolInput>{at(way.at(t))}; };
   World lying = trocar;
   lying.file.tools = {capsule(0.035)};
   lying.hands = [way](double t) {

@@ -1,16 +1,12 @@
 // Up to which stiffness a wall stays stable in a hand: operators x laws x walls x rates x latencies, closed
-// loop in virtual time. Run by `scripts/study stability`; the same arguments give the same bytes.
-#include <atomic>
-#include <cstdio>
+// loop in virtual time.
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
-#include <thread>
 
-#include "common/error.h"
-#include "common/report.h"
 #include "common/text.h"
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "tests/studies/press_and_slide.h"
+#include "tests/studies/studies.h"
 #include "tests/support/random.h"
 
 using namespace palpate;
@@ -51,10 +47,7 @@ double depth_of(const std::string& world, double stiffness) {
 class Watch {
  public:
   void see(double t, double start, const Vec3& place, const Vec3& rendered, const Vec3& right) {
-    if (t > start) {
-      error2_ += (rendered - right).squaredNorm();
-      force2_ += right.squaredNorm();
-    }
+    if (t > start) errors_.add(rendered, right);
     if (t >= kWatch) {
       ++watched_;
       low_ = std::min(low_, place[1]);
@@ -63,19 +56,20 @@ class Watch {
     }
     place_ = place;
   }
-  Run result(bool latched) const {
+  Outcome result(bool latched) const {
     const bool moves = high_ - low_ > kSwing && std::sqrt(speed2_ / watched_) > kSpeed;
-    return {!moves && !latched, force2_ > 0 ? std::sqrt(error2_ / force2_) : 0};
+    return {!moves && !latched, errors_.rms()};
   }
 
  private:
   Vec3 place_ = Vec3::Zero();
-  double low_ = 1, high_ = -1, speed2_ = 0, error2_ = 0, force2_ = 0;
+  double low_ = 1, high_ = -1, speed2_ = 0;
+  ForceErrors errors_;
   int watched_ = 0;
 };
 
 /// The true force at the haptic rate, without a law or a link: what no law can beat by much.
-Run run_direct(Encoder& device, const test::Organ& organ, double start) {
+Outcome run_direct(Encoder& device, const test::Organ& organ, double start) {
   Watch watch;
   for (int tick = 0; tick < kEnd * kHapticHz; ++tick) {
     const double t = tick / kHapticHz;
@@ -87,7 +81,7 @@ Run run_direct(Encoder& device, const test::Organ& organ, double start) {
 }
 
 /// Against a wall.
-Run run(const Cell& cell, double stiffness, int seed) {
+Outcome run(const Cell& cell, double stiffness, int seed) {
   test::Random random(static_cast<std::uint64_t>(seed) + 17);
   const double start = kFree + random.between(0, 1 / cell.link.rate_hz);
   const double target = -depth_of(cell.world, stiffness) - kPress / cell.person->hand.hand_stiffness;
@@ -192,22 +186,6 @@ std::vector<Cell> cells_by_delay() {
   return all;
 }
 
-/// Does `work(k, slides)` for each k below `count` on all cores.
-template <class Work>
-void for_all(std::size_t count, const char* what, Work work) {
-  std::atomic<std::size_t> next{0}, done{0};
-  std::vector<std::jthread> workers;
-  for (unsigned i = 0; i < std::max(1u, std::thread::hardware_concurrency()); ++i) {
-    workers.emplace_back([&] {
-      PressAndSlide slides;
-      for (std::size_t k; (k = next++) < count;) {
-        work(k, slides);
-        fmt::print(stderr, "{}: {} of {}\n", what, ++done, count);
-      }
-    });
-  }
-}
-
 void study(const std::vector<Cell>& all, const std::filesystem::path& out) {
   std::filesystem::create_directories(out);
   std::vector<Cell> walls;  // one for each operator and world
@@ -217,8 +195,10 @@ void study(const std::vector<Cell>& all, const std::filesystem::path& out) {
     if (!known) walls.push_back({cell.person, kDirect, cell.world, false, cell.link});
   }
   std::vector<double> limits(walls.size());
-  for_all(walls.size(), "direct limits", [&](std::size_t k, PressAndSlide&) {
-    limits[k] = is_slide(walls[k].world) ? PressAndSlide::stiffnesses().back() : threshold(walls[k]);
+  for_all(walls.size(), "direct limits", [&] {
+    return [&](std::size_t k) {
+      limits[k] = is_slide(walls[k].world) ? PressAndSlide::stiffnesses().back() : threshold(walls[k]);
+    };
   });
   const auto direct = [&](const Cell& cell) {
     const auto wall = std::ranges::find_if(
@@ -226,8 +206,11 @@ void study(const std::vector<Cell>& all, const std::filesystem::path& out) {
     return limits[static_cast<std::size_t>(wall - walls.begin())];
   };
   std::vector<Json> rows(all.size());
-  for_all(all.size(), "laws",
-          [&](std::size_t k, PressAndSlide& slides) { rows[k] = row_of(all[k], direct(all[k]), slides); });
+  for_all(all.size(), "laws", [&] {
+    return [&, slides = PressAndSlide()](std::size_t k) mutable {
+      rows[k] = row_of(all[k], direct(all[k]), slides);
+    };
+  });
   write_csv(out / "stability.csv", csv_of(Json(rows)));
   write_json(out / "summary.json", rows);
 }
@@ -241,19 +224,22 @@ Pipeline palpate::studies::pipeline_of(const Cell& cell) {
           {.enabled = cell.passivity}};
 }
 
-int main(int argc, char** argv) {
-  const std::vector<std::string> arguments(argv + 1, argv + argc);
-  const std::string which = arguments.size() == 2 ? arguments.front() : "";
-  const bool known = which.empty() || which == "--quick" || which == "--by-delay";
-  if (arguments.empty() || arguments.size() > 2 || !known || arguments.back().front() == '-') {
-    fmt::print(stderr, "usage: stability_study [--quick|--by-delay] DIR\n");
-    return 2;
-  }
-  try {
-    study(which == "--by-delay" ? cells_by_delay() : cells(which == "--quick"), arguments.back());
-  } catch (const Error& e) {
-    fmt::print(stderr, "stability_study: {}\n", e.what());
-    return e.exit_code();
-  }
-  return 0;
+Command palpate::studies::stability_command() {
+  struct Options {
+    std::filesystem::path out;
+    bool quick = false, by_delay = false;
+  };
+  const auto options = std::make_shared<Options>();
+  return {
+      .name = "stability",
+      .summary = "Up to which stiffness a wall stays stable in a hand: hands, laws, walls, rates, latencies",
+      .footer = "Example: studies stability out/stability --quick",
+      .options = {{"DIR", "Folder for stability.csv and summary.json", &options->out, {.required = true}},
+                  quick_option(options->quick),
+                  {"--by-delay", "Every law on walls, by delay: what `haptic_client commtest` judges by",
+                   &options->by_delay}},
+      .run = [options] {
+        study(options->by_delay ? cells_by_delay() : cells(options->quick), options->out);
+        return 0;
+      }};
 }

@@ -31,7 +31,7 @@ TEST_CASE("commtest: every law has a row, and only a law that exists") {
   CHECK_FALSE(stable_to("no such law", 10));
 }
 
-// As printed by `stability_study --by-delay`: constant 154 N/m at 15 ms, 95 at 38.
+// As printed by `studies stability --by-delay`: constant 154 N/m at 15 ms, 95 at 38.
 TEST_CASE("commtest: between two ages of the study the smaller stiffness counts, beyond the last none") {
   CHECK(stable_to("constant", 0) == 271);
   CHECK(stable_to("constant", 15) == 154);
