@@ -1,11 +1,10 @@
 // The calibration of the torque constant against the emulated Falcon: driver, state machine and limiter in
 // virtual time.
-#include "haptic_client/calibration/calibration.h"
-
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "haptic_client/calibration/calibration.h"
 #include "haptic_client/device/falcon.h"
 #include "tests/emulation/falcon.h"
 #include "tests/support/catch.h"
