@@ -1,7 +1,12 @@
 #include "sim_server/low_rank/low_rank_factors.h"
 
-#include <Eigen/SVD>
 #include <cmath>
+#include <vector>
+
+// The singular value decomposition of LAPACK. Eigen's takes 25 s to compile.
+extern "C" void dgesdd_(const char* job, const int* rows, const int* columns, double* a, const int* rows_of_a,
+                        double* singular, double* u, const int* rows_of_u, double* vt, const int* rows_of_vt,
+                        double* work, const int* work_size, int* integers, int* info);
 
 namespace palpate::sim {
 namespace {
@@ -19,6 +24,32 @@ Eigen::Index needed(const Eigen::VectorXd& singular, double omitted) {
     --count;
   }
   return count;
+}
+
+/// Singular value decomposition of a matrix with no more rows than columns: u diag(singular) vt.
+struct Decomposition {
+  Eigen::MatrixXd u;         // rows x rows
+  Eigen::VectorXd singular;  // the largest first
+  Eigen::MatrixXd vt;        // rows x columns
+};
+
+/// Returns nothing if LAPACK's iteration does not converge.
+std::optional<Decomposition> decompose(Eigen::MatrixXd a) {
+  const int rows = static_cast<int>(a.rows()), columns = static_cast<int>(a.cols());
+  Decomposition found{Eigen::MatrixXd(rows, rows), Eigen::VectorXd(rows), Eigen::MatrixXd(rows, columns)};
+  std::vector<int> integers(static_cast<std::size_t>(8 * rows));
+  Eigen::VectorXd work(1);
+  int info = 0;
+  for (int size : {-1, 0}) {  // the first call asks for the size
+    if (size == 0) {
+      size = static_cast<int>(work[0]);
+      work.resize(size);
+    }
+    dgesdd_("S", &rows, &columns, a.data(), &rows, found.singular.data(), found.u.data(), &rows,
+            found.vt.data(), &rows, work.data(), &size, integers.data(), &info);
+  }
+  if (info != 0) return {};
+  return found;
 }
 
 }  // namespace
@@ -39,13 +70,13 @@ std::optional<LowRankFactors> low_rank_factors(Eigen::MatrixXd matrix, double to
     squares = matrix.colwise().squaredNorm();
   }
   if (rank == 0) return LowRankFactors{Eigen::MatrixXf(0, n), Eigen::MatrixXf(0, m)};
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(fractions.topRows(rank),
-                                           Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::Index count = needed(svd.singularValues(), std::sqrt(1 - kOfColumns * kOfColumns) * tolerance);
-  const Eigen::VectorXd roots = svd.singularValues().head(count).cwiseSqrt();
-  const Eigen::MatrixXd left = basis.leftCols(rank) * svd.matrixU().leftCols(count) * roots.asDiagonal(),
-                        right = svd.matrixV().leftCols(count) * roots.asDiagonal();
-  return LowRankFactors{left.transpose().cast<float>(), right.transpose().cast<float>()};
+  const std::optional<Decomposition> svd = decompose(fractions.topRows(rank));
+  if (!svd) return {};
+  const Eigen::Index count = needed(svd->singular, std::sqrt(1 - kOfColumns * kOfColumns) * tolerance);
+  const Eigen::VectorXd roots = svd->singular.head(count).cwiseSqrt();
+  const Eigen::MatrixXd left = basis.leftCols(rank) * svd->u.leftCols(count) * roots.asDiagonal();
+  return LowRankFactors{left.transpose().cast<float>(),
+                        (roots.asDiagonal() * svd->vt.topRows(count)).cast<float>()};
 }
 
 }  // namespace palpate::sim
