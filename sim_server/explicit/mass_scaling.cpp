@@ -1,13 +1,14 @@
 #include "sim_server/explicit/mass_scaling.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/core.h>
 #include <numeric>
 
 #include "sim_server/elasticity/element.h"
 #include "sim_server/elasticity/tensors.h"
+#include "sim_server/sparse/blas.h"
 
 namespace palpate::sim {
 namespace {
@@ -23,8 +24,12 @@ double squared_frequency(const LinearTetrahedron& element, const Material& mater
           stiffness_per_volume(moduli, element.gradient[a], element.gradient[b]);
     }
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix12> solver(k, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues()[11] / (material.density / 4);
+  constexpr int kRows = 12, kWork = 3 * kRows;
+  std::array<double, kRows> eigenvalues;
+  std::array<double, kWork> work;
+  int info = 0;  // Eigen's solver takes 14 s to compile
+  Blas<double>::syev("N", "L", &kRows, k.data(), &kRows, eigenvalues.data(), work.data(), &kWork, &info);
+  return eigenvalues.back() / (material.density / 4);
 }
 
 double squared_frequency_in(const TetMesh& mesh, std::size_t tetrahedron, const Material& material) {

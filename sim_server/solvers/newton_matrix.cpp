@@ -1,12 +1,14 @@
 #include "sim_server/solvers/newton_matrix.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "common/parallel.h"
 #include "common/realtime.h"
+#include "sim_server/solvers/dense_modes.h"
+#include "sim_server/sparse/blas.h"
 
 namespace palpate::sim {
 namespace {
@@ -34,6 +36,22 @@ double mean_of(std::span<const double> values) {
 SparseCholesky::Precision precision_for(const Material& material, bool cut) {
   using Precision = SparseCholesky::Precision;
   return material.law == ElasticLaw::kLinear && !cut ? Precision::kDouble : Precision::kSingle;
+}
+
+/// Replaces the lower triangle of a symmetric matrix by its Cholesky factor, of LAPACK (Eigen's takes seconds
+/// to compile). Returns true if the matrix is positive definite.
+bool factor_in_place(Eigen::MatrixXd& a) {
+  const int n = static_cast<int>(a.rows()), lead = std::max(n, 1);
+  int info = 0;
+  Blas<double>::potrf("L", &n, a.data(), &lead, &info);
+  return info == 0;
+}
+
+/// b <- A^-1 b, by the Cholesky factor of A in the lower triangle of `factor`.
+void solve_in_place(const Eigen::MatrixXd& factor, Eigen::MatrixXd& b) {
+  const int n = static_cast<int>(factor.rows()), lead = std::max(n, 1), columns = static_cast<int>(b.cols());
+  int info = 0;
+  Blas<double>::potrs("L", &n, &columns, factor.data(), &lead, b.data(), &lead, &info);
 }
 
 }  // namespace
@@ -105,7 +123,7 @@ void NewtonMatrix::part(std::span<const Split> splits) {
   if (splits.empty()) return;
   const auto size = static_cast<Eigen::Index>(3 * copies_.size());
   border_ = response_ = Eigen::MatrixXd::Zero(matrix_.lower().rows(), size);
-  schur_.compute(mean_diagonal_ * Eigen::MatrixXd::Identity(size, size));
+  schur_ = std::sqrt(mean_diagonal_) * Eigen::MatrixXd::Identity(size, size);
   border_is_made_ = false;
 }
 
@@ -154,13 +172,15 @@ void NewtonMatrix::use_border() {
   response_ += factor_.solve(border_ - matrix_.times(response_));
   Eigen::MatrixXd schur = corner_ - border_.transpose() * response_;
   schur = 0.5 * (schur + schur.transpose()).eval();
-  schur_.compute(schur);
-  border_misfits_ = schur_.info() != Eigen::Success;
+  schur_ = schur;
+  border_misfits_ = !factor_in_place(schur_);
   if (!border_misfits_) return;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(schur);
+  const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(schur.rows(), schur.cols());
   const double least = kLeastOfBorder * std::max(corner_.diagonal().mean(), mean_diagonal_);
-  schur_.compute(modes.eigenvectors() * modes.eigenvalues().cwiseMax(least).asDiagonal() *
-                 modes.eigenvectors().transpose());
+  schur_ = least * unit;
+  if (const auto modes = dense_modes(schur, unit))
+    schur_ = modes->shapes * modes->values.cwiseMax(least).asDiagonal() * modes->shapes.transpose();
+  factor_in_place(schur_);
 }
 
 Eigen::MatrixXd NewtonMatrix::solve(const Eigen::MatrixXd& b) const {
@@ -174,7 +194,7 @@ Eigen::MatrixXd NewtonMatrix::solve(const Eigen::MatrixXd& b) const {
   }
   Eigen::MatrixXd x = factor_.solve(loads);
   separate -= border_.transpose() * x;
-  schur_.solveInPlace(separate);
+  solve_in_place(schur_, separate);
   x -= response_ * separate;
   for (std::size_t k = 0; k < copies_.size(); ++k) {
     x.middleRows<3>(first_of(copies_[k].copy)) =

@@ -1,5 +1,5 @@
 #pragma once
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <array>
 #include <map>
 #include <memory>
@@ -105,7 +105,7 @@ class NewtonMatrix {
   // By copies, three ways each, N/m: how forces follow those ways, on the body as if none had become two, and
   // on the copies; what the body does against the first; and the Schur complement of the whole.
   Eigen::MatrixXd border_, corner_, response_;
-  Eigen::LLT<Eigen::MatrixXd> schur_;
+  Eigen::MatrixXd schur_;           // its Cholesky factor, in the lower triangle
   double more_inertia_ = 0;         // 1/s^2, the last that an indefinite A was given
   std::vector<Mat3> built_turned_;  // (nodes) how they had turned where A was built; empty: not at all
   std::vector<Mat3> turns_;         // (nodes) Q, or empty: none has turned

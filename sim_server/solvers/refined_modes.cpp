@@ -1,6 +1,4 @@
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-
+#include "sim_server/solvers/dense_modes.h"
 #include "sim_server/solvers/vibration_modes.h"
 
 namespace palpate::sim {
@@ -13,16 +11,13 @@ std::optional<VibrationModes> refined_modes(const FactoredMatrix& stiffness, con
   for (int k = 0; k < kMost; ++k) {
     const Eigen::MatrixXd forces = masses.asDiagonal() * shapes;
     const Eigen::MatrixXd next = stiffness.solve(forces);
-    const Eigen::MatrixXd of_stiffness = next.transpose() * forces,
-                          of_masses = next.transpose() * masses.asDiagonal() * next;
-    if (of_masses.llt().info() != Eigen::Success) return {};  // the eigen-solver does not look
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> small(
-        0.5 * (of_stiffness + of_stiffness.transpose()), of_masses);
-    if (small.info() != Eigen::Success || !(small.eigenvalues().array() > 0).all()) return {};
-    shapes.noalias() = next * small.eigenvectors();
-    const double change =
-        ((small.eigenvalues() - squares).array() / small.eigenvalues().array()).abs().maxCoeff();
-    squares = small.eigenvalues();
+    const Eigen::MatrixXd of_stiffness = next.transpose() * forces;
+    const auto small = dense_modes(0.5 * (of_stiffness + of_stiffness.transpose()),
+                                   next.transpose() * masses.asDiagonal() * next);
+    if (!small || !(small->values.array() > 0).all()) return {};
+    shapes.noalias() = next * small->shapes;
+    const double change = ((small->values - squares).array() / small->values.array()).abs().maxCoeff();
+    squares = small->values;
     if (change < kSettled) break;
   }
   return VibrationModes{squares.cwiseSqrt(), std::move(shapes)};

@@ -14,7 +14,11 @@ extern "C" {
                 const S*, const int*, S*, const int*);                                                       \
   void p##trsv_(const char*, const char*, const char*, const int*, const S*, const int*, S*, const int*);    \
   void p##potrf_(const char*, const int*, S*, const int*, int*);                                             \
-  void p##potri_(const char*, const int*, S*, const int*, int*);
+  void p##potri_(const char*, const int*, S*, const int*, int*);                                             \
+  void p##potrs_(const char*, const int*, const int*, const S*, const int*, S*, const int*, int*);           \
+  void p##syev_(const char*, const char*, const int*, S*, const int*, S*, S*, const int*, int*);             \
+  void p##sygv_(const int*, const char*, const char*, const int*, S*, const int*, S*, const int*, S*, S*,    \
+                const int*, int*);
 PALPATE_BLAS(double, d)
 PALPATE_BLAS(float, s)
 #undef PALPATE_BLAS
@@ -37,6 +41,9 @@ struct Blas<double> {
   static constexpr auto trsv = dtrsv_;
   static constexpr auto potrf = dpotrf_;
   static constexpr auto potri = dpotri_;
+  static constexpr auto potrs = dpotrs_;
+  static constexpr auto syev = dsyev_;
+  static constexpr auto sygv = dsygv_;
 };
 template <>
 struct Blas<float> {
@@ -47,6 +54,9 @@ struct Blas<float> {
   static constexpr auto trsv = strsv_;
   static constexpr auto potrf = spotrf_;
   static constexpr auto potri = spotri_;
+  static constexpr auto potrs = spotrs_;
+  static constexpr auto syev = ssyev_;
+  static constexpr auto sygv = ssygv_;
 };
 
 }  // namespace palpate::sim
