@@ -51,7 +51,7 @@ const Header& header_at(const void* begin) {
 /// True of KEY.setup, and of the longer name that it has while it is written: the folder may belong to
 /// anybody.
 bool is_entry_name(std::string_view name) {
-  constexpr std::size_t kDigits = 32;
+  constexpr std::size_t kDigits = 32;  // of a key
   return name.find_first_not_of("0123456789abcdef") == kDigits && name.substr(kDigits).starts_with(kEnding);
 }
 
