@@ -153,6 +153,39 @@ TEST_CASE("friction: a soft face is carried along until it slips: 3/c, then mu F
   CHECK(path.nodes[0][2] + path.nodes[1][2] + path.nodes[2][2] > 0);  // the face went along
 }
 
+TEST_CASE("friction: a ball drags a face on springs to and fro: the loop of a spring with a slider") {
+  // The face yields along itself alone, by c / 3, in series with the tip: k. The loop of force against way
+  // has the area 4 mu F_n (x_max - mu F_n / k). The way is so short that each corner bears a third of the
+  // force.
+  constexpr double c = 5e-3, k_tip = 2000, depth = 2e-5, normal = k_tip * depth, most = kMu * normal,
+                   k = 1 / (c / 3 + 1 / k_tip), farthest = 5 * most / k;
+  const auto at = [](double x) -> Vec3 { return pressed(depth) + x * Vec3::UnitX(); };
+  for (const int increments : {5, 20, 320}) {  // of each way; the slide starts at the end of one
+    ContactPatch patch = single_triangle(c, 1 / k_tip);
+    for (int i = 0; i < 3; ++i) patch.compliance(3 * i + 1, 3 * i + 1) = 0;
+    Path path(std::move(patch));
+    path.go(at(0));
+    path.go(at(0), at(farthest), increments);
+    double x = farthest, spring = most, last = -path.go(at(x)).force[0], area = 0;
+    CHECK(last == Approx(most).epsilon(0.01));
+    for (const double way : {-1.0, 1.0}) {
+      for (int i = 1; i <= increments; ++i) {
+        const double to = way * farthest * (2.0 * i / increments - 1);
+        const ContactForce force = path.go(at(to));
+        spring = std::clamp(spring + k * (to - x), -most, most);
+        CAPTURE(increments, to / farthest, spring / most, force.force[0] / most);
+        CHECK(force.converged);
+        CHECK(force.force[1] == Approx(normal).epsilon(1e-4));
+        CHECK(-force.force[0] == Approx(spring).margin(0.01 * most));
+        area += 0.5 * (last - force.force[0]) * (to - x);
+        last = -force.force[0];
+        x = to;
+      }
+    }
+    CHECK(area == Approx(4 * most * (farthest - most / k)).epsilon(0.01));
+  }
+}
+
 TEST_CASE(
     "friction: pressing on a half-space, then sliding far: every contact at mu F_n, against the slide") {
   Path path(half_space(7, 0.0007, 3e4));
