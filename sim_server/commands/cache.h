@@ -25,7 +25,7 @@ std::optional<Condensed> open_condensed(const CacheOptions& options, const Scene
 
 /// `--cache` and `--no-cache`; `needs`: option without which they are no use, if not empty.
 std::vector<Option> cache_or_none(CacheOptions& options, const std::string& needs = {});
-/// Those, and `--condensed`.
+/// `--cache`, `--no-cache` and `--condensed`.
 std::vector<Option> cache_options(CacheOptions& options, const std::string& needs = {});
 
 }  // namespace palpate::sim

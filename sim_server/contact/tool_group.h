@@ -14,7 +14,7 @@ namespace palpate::sim {
 /// constructor allocates; what the model throws passes through. One thread.
 class ToolGroup {
  public:
-  /// What a step changes, as a value.
+  /// State that a step changes, as a value.
   struct State {
     std::vector<ToolContact> tools;
     bool released;

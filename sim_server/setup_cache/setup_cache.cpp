@@ -84,6 +84,7 @@ void write_entry(const fs::path& folder, const Digest& key, double seconds,
   header.checksum = checksum_of(header, key, matrix.data(), numbers);
   const fs::path file = entry_file(folder, key),
                  part = fmt::format("{}.{:08x}", file.string(), std::random_device()());
+  errno = 0;
   std::ofstream out(part, std::ios::binary);
   out.write(reinterpret_cast<const char*>(&header), sizeof(header));
   out.seekp(kPage);
@@ -91,7 +92,7 @@ void write_entry(const fs::path& folder, const Digest& key, double seconds,
             static_cast<std::streamsize>(numbers * sizeof(double)));
   out.close();
   std::error_code failed, ignored;
-  if (!out) failed = {errno, std::generic_category()};
+  if (!out) failed = {errno != 0 ? errno : EIO, std::generic_category()};
   if (!failed) fs::rename(part, file, failed);
   if (!failed) return;
   fs::remove(part, ignored);
@@ -109,7 +110,7 @@ std::optional<MappedMatrix> map_entry(const fs::path& name, const Digest& key) {
                : ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_POPULATE, file, 0);
   if (begin == MAP_FAILED) failed = {errno, std::generic_category()};
   if (file >= 0) ::close(file);
-  if (failed) fail("{}: cannot be read: {}", name.string(), failed.message());
+  if (failed) fail_at_run_time("{}: cannot be read: {}", name.string(), failed.message());
   MappedMatrix mapped(begin, bytes);
   const Header& header = header_at(begin);
   if (header.magic != Header().magic) fail("{}: is no entry of this version", name.string());
@@ -126,9 +127,11 @@ std::optional<MappedMatrix> SetupCache::find(const Digest& key) const {
   try {
     return map_entry(file, key);
   } catch (const Error& error) {
-    log::warning("set-up cache: {}; it is removed and made again", error.what());
+    // One that only cannot be read now, as for want of memory or rights, may be sound.
+    const bool is_spoilt = error.exit_code() == static_cast<int>(Error::Kind::kInput);
+    log::warning("set-up cache: {}; it is {}made again", error.what(), is_spoilt ? "removed and " : "");
     std::error_code ignored;
-    fs::remove(file, ignored);
+    if (is_spoilt) fs::remove(file, ignored);
     return {};
   }
 }

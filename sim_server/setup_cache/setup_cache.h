@@ -36,8 +36,8 @@ std::filesystem::path entry_file(const std::filesystem::path& folder, const Dige
 void write_entry(const std::filesystem::path& folder, const Digest& key, double seconds,
                  const Eigen::Ref<const Eigen::MatrixXd>& matrix);
 
-/// Maps the entry with this key; nothing where there is no file. Throws `Error` if the file cannot be read,
-/// or its version or checksum is another. O(bytes).
+/// Maps the entry with this key; nothing where there is no file. Throws `Error` if its version or checksum
+/// is another; of kind `kRun` if the file cannot be read. O(bytes).
 std::optional<MappedMatrix> map_entry(const std::filesystem::path& file, const Digest& key);
 
 /// Cache of set-up results in a folder. Several programs may use one at once. Set-up only; one thread.

@@ -115,7 +115,7 @@ class Simulation {
     Vec3 all = Vec3::Zero();   // at the instants, N
     Vec3 late = Vec3::Zero();  // at the last of them, N
   };
-  /// What a step changes beside organ, tissue and tools.
+  /// State that a step changes beside organ, tissue and tools.
   struct State {
     double time = 0;                        // s, of all steps
     bool failed = false, ran_away = false;  // in the last step

@@ -58,8 +58,13 @@ class LoadedBody {
  private:
   bool is_linear() const { return solid_.material().law == ElasticLaw::kLinear; }
 
-  /// An equilibrium with an indefinite stiffness is one that the body leaves as it is touched.
-  bool is_stable() const { return !matrix_.is_shifted(); }
+  /// Returns true if the stiffness at the trial point is positive definite: a body leaves any other
+  /// equilibrium as it is touched. Factors it.
+  bool is_stable() {
+    if (is_linear()) return true;
+    matrix_.build(solid_, *x_, masses_, {}, 0, scratch_);
+    return !matrix_.is_shifted();
+  }
 
   NewtonProblem problem() {
     return {.residual = [this] { return residual_here(); },
@@ -167,8 +172,7 @@ Equilibrium find_equilibrium(const Solid& solid, const StaticLoad& load, const s
     } else if ((step /= 2) < smallest) {
       fail(
           "{}: no stable equilibrium found beyond {:.3g} % of the load: a smaller load, a stiffer material, "
-          "finer "
-          "tetrahedra or law neo_hookean would help",
+          "finer tetrahedra or law neo_hookean would help",
           where, 100 * done);
     }
   }

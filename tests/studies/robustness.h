@@ -155,7 +155,7 @@ struct World {
   bool tells_path = true;  // where the tools were within each step
 };
 
-/// What the tools felt in one step.
+/// Forces on the tools in one step.
 struct Rendered {
   double t;  // s
   std::vector<ToolPose> poses;
@@ -190,14 +190,14 @@ struct Run : Watched {
 /// refuses.
 Run follow(const Trial& trial, const Column& column, const std::vector<Path>& paths, bool separate);
 
-/// What is held against the runs of a trial, one for each phase: the worst of them.
+/// Judges the runs of a trial, one for each phase. Returns the worst verdict.
 Verdict judge(const std::vector<Run>& runs, const Trial& trial, const Column& column);
 
 /// Vectors of one step that should be those of another: forces, torques.
 using Vectors = std::vector<Vec3>;
-/// What should be felt at a step, or nothing, where there is nothing to tell of it.
+/// Returns the vectors expected at a step; nothing where none are known.
 using Expected = std::function<std::optional<Vectors>(std::size_t step)>;
-/// What of a step is told.
+/// Returns the vectors of a step that are compared.
 using Published = std::function<Vectors(const Rendered&)>;
 
 /// The force on the first tool; with its torque.
@@ -207,7 +207,7 @@ Vectors force_and_torque_of(const Rendered& rendered);
 /// The steps of another world from `from` (s) on, but those it flagged.
 Expected as_in(Watched other, Published published, double from = 0);
 
-/// In the last `seconds` of that world.
+/// Expects `right` in the last `seconds` (s) of that world.
 Expected at_the_end(const World& world, Vectors right, double seconds = 0.5 * kRest);
 
 /// Stable, flagged or exploded: before it is held against anything.
@@ -224,7 +224,8 @@ struct Gripped {
   double reach;  // m
   Vec3 moved;    // m
 };
-/// What tools feel that move these and let the rest of the body, of any law, come to equilibrium, N.
+/// Returns the forces on tools that move these vertices while the rest of the body, of any law, is in
+/// equilibrium, N.
 Vectors reactions(const World& world, const Column& column, const std::vector<Gripped>& grips);
 
 /// The work that tools do on the hands that hold them, by the trapezoidal rule in places and turns: J; and
@@ -234,7 +235,7 @@ struct Work {
 };
 Work work_of(const Watched& watched);
 
-/// How extreme.
+/// Settings of a row: how extreme it is.
 struct Setting {
   std::string name = {}, what = {};
   double modulus = 1e4, nu = 0.45, rate_hz = 30;  // Pa, -, Hz
@@ -256,7 +257,7 @@ struct Direction {
 constexpr double kToolRadius = 0.004;  // m, of most tools
 /// Down from 2 mm above the block, then along.
 Direction press_and_draw(const Setting& setting, const Vec3& along);
-/// That block under one tool that goes that way and rests.
+/// Returns that block under one tool that follows `way` and rests.
 World under_tool(const Setting& setting, const Direction& way);
 /// One tool there, or lifted.
 sim::ToolInput at(const Vec3& p, const Quat& q = Quat::Identity());
@@ -264,7 +265,7 @@ sim::ToolInput at(const Vec3& p, const Quat& q = Quat::Identity());
 /// Worlds that differ by rounding, by what Newton may leave: of the force.
 constexpr double kSame = 1e-3;
 
-/// What a row does with one setting and one model.
+/// Function that runs a row with one setting and one model.
 using Judge = Verdict (*)(const Setting&, const Column&);
 /// Rows of these settings, the first of them also in a quick study where `quick`; their names and words are
 /// added to those of the row.
