@@ -6,12 +6,14 @@
 
 namespace palpate {
 
-/// Finds the nodes at which friction acts, and how the contacts press on them.
-void ContactSolver::find_friction_nodes(const ContactPatch& patch) noexcept {
+/// Finds the nodes at which friction acts, and how the contacts press on them. False: there is room for some
+/// of them only.
+bool ContactSolver::find_friction_nodes(const ContactPatch& patch) noexcept {
   FrictionNodes& f = friction_nodes_;
   f.places.clear();
   f.shares.clear();
-  if (!path_.has_friction || contacts_.empty()) return;
+  if (!path_.has_friction || contacts_.empty()) return true;
+  bool complete = true;
   const auto slot_of = [&](int tool, int node) {
     return static_cast<std::size_t>(tool * patch.nodes() + node);
   };
@@ -19,8 +21,11 @@ void ContactSolver::find_friction_nodes(const ContactPatch& patch) noexcept {
     const Contact& c = contacts_[k];
     for (int i = 0; c.friction > 0 && i < c.size; ++i) {
       int& place = f.at_node[slot_of(c.tool, c.node[i])];
-      if (place < 0 && f.places.size() == f.places.capacity()) continue;  // as of contacts: no room
       if (place < 0) {
+        if (f.places.size() == f.places.capacity()) {
+          complete = false;
+          continue;
+        }
         place = static_cast<int>(f.places.size());
         f.places.push_back(c);
         f.places.back().node = {c.node[i], -1, -1};
@@ -32,6 +37,7 @@ void ContactSolver::find_friction_nodes(const ContactPatch& patch) noexcept {
   auto force = lambda_.head(static_cast<Eigen::Index>(contacts_.size()));
   recall(force);
   average_contacts(force);
+  return complete;
 }
 
 /// Gives each node of friction the mean normal, arm and lever of its contacts. They count by the force that

@@ -194,22 +194,25 @@ void ContactSolver::start_increment(const ContactPatch& patch, std::span<const T
 }
 
 /// Finds what each tool may touch, with the nodes and tips displaced by `u`, where things still move by
-/// `change` (m).
-void ContactSolver::find_contacts(std::span<const TouchingTool> tools,
+/// `change` (m). False: there is room for some of it only.
+bool ContactSolver::find_contacts(std::span<const TouchingTool> tools,
                                   const Eigen::Ref<const Eigen::VectorXd>& u, double change) noexcept {
   contacts_.clear();
+  bool complete = true;
   const auto tips = u.size() - 3 * static_cast<Eigen::Index>(tools.size());
   for (std::size_t t = 0; t < tools.size(); ++t) {
     const std::size_t first = contacts_.size();
     const Vec3 tip = tools[t].pose.p_W + u.segment<3>(tips + 3 * static_cast<Eigen::Index>(t));
     path_.tools[t].tip = tip;
-    find_contacts_on_patch(deformed_, tools[t].triangles, *tools[t].tool, {tip, tools[t].pose.q_W},
-                           margin_for(change, *tools[t].tool), contacts_);
+    complete &=
+        find_contacts_on_patch(deformed_, tools[t].triangles, *tools[t].tool, {tip, tools[t].pose.q_W},
+                               margin_for(change, *tools[t].tool), contacts_);
     for (Contact& c : std::span(contacts_).subspan(first)) {
       c.tool = static_cast<int>(t);
       c.friction = tools[t].tool->friction;
     }
   }
+  return complete;
 }
 
 /// Gaps, and slips, of the contacts as they would be without forces.
@@ -279,8 +282,8 @@ void ContactSolver::solve(ContactPatch& patch, std::span<const TouchingTool> too
   while (true) {
     ++result.iterations;
     deform(patch.free, u, deformed_);
-    find_contacts(tools, u, change);
-    find_friction_nodes(patch);
+    const bool contacts_complete = find_contacts(tools, u, change),
+               complete = find_friction_nodes(patch) && contacts_complete;
     const auto size = static_cast<double>(rows());
     if (!work_.spend(size * (27.0 * m + 9 * size))) {
       contacts_.clear();
@@ -298,7 +301,7 @@ void ContactSolver::solve(ContactPatch& patch, std::span<const TouchingTool> too
     // Newton's next step is at least as much shorter than this one as this is than the last.
     const double remaining =
         by_newton && newton_worked ? change * std::min(1.0, change / last_change) : change;
-    result.converged = solved && remaining <= effort.tolerance * radius && !work_.is_spent();
+    result.converged = solved && complete && remaining <= effort.tolerance * radius && !work_.is_spent();
     if (result.converged || result.iterations == effort.max_iterations) break;
     // Plain iteration, where Newton fails: never so far that the surface could pass the tip.
     const bool onward = result.iterations == 1 || increment.dot(next - u) > 0;

@@ -57,8 +57,8 @@ struct ContactForce {
   Vec3 torque = Vec3::Zero();  ///< on the tool about its tip, N m; 0 for a shaft that pivots
   int contacts = 0;            ///< touching features
   int iterations = 0;          ///< linearisations used
-  bool converged =
-      true;  ///< false: the answer is finite, the geometry still moved by more than the tolerance
+  bool converged = true;       ///< false: the answer is finite, but the geometry still moved by more than the
+                               ///< tolerance, or more touches than there is room for
 };
 
 /// Force on the tool at a feature that it touches.
@@ -181,9 +181,9 @@ class ContactSolver {
   Vec3 travel(Eigen::Index row) const;
   std::array<int, 3> vertices_of(const Contact& c) const;
   void start_increment(const ContactPatch& patch, std::span<const TouchingTool> tools) noexcept;
-  void find_contacts(std::span<const TouchingTool> tools, const Eigen::Ref<const Eigen::VectorXd>& u,
+  bool find_contacts(std::span<const TouchingTool> tools, const Eigen::Ref<const Eigen::VectorXd>& u,
                      double change) noexcept;
-  void find_friction_nodes(const ContactPatch& patch) noexcept;
+  bool find_friction_nodes(const ContactPatch& patch) noexcept;
   void average_contacts(const Eigen::Ref<const Eigen::VectorXd>& force) noexcept;
   void linearise(ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u) noexcept;
   void assemble_delassus(const ContactPatch& patch) noexcept;

@@ -30,13 +30,14 @@ struct Search {
   double margin;
   std::vector<Contact>& contacts;
   std::size_t first = contacts.size();  // those before are of other tools
+  bool complete = true;                 // there was room for all
 
   void add(Contact contact, Contact::Part part, const Vec3& on_axis, const Vec3& to_tool, double radius,
            const Vec3& face) noexcept {
     const auto same = [&](const Contact& other) { return other.node == contact.node && other.part == part; };
-    if (contacts.size() == contacts.capacity() ||
-        std::ranges::any_of(std::span(contacts).subspan(first), same))
-      return;
+    if (std::ranges::any_of(std::span(contacts).subspan(first), same)) return;
+    complete &= contacts.size() < contacts.capacity();
+    if (!complete) return;
     contact.part = part;
     contact.distance = to_tool.norm();
     contact.radius = radius;
@@ -76,7 +77,7 @@ struct Search {
 
 }  // namespace
 
-void find_contacts_on_patch(std::span<const Vec3> x, std::span<const std::array<int, 3>> triangles,
+bool find_contacts_on_patch(std::span<const Vec3> x, std::span<const std::array<int, 3>> triangles,
                             const Tool& tool, const ToolPose& pose, double margin,
                             std::vector<Contact>& contacts) noexcept {
   Search search{x, pose.p_W, margin, contacts};
@@ -87,6 +88,7 @@ void find_contacts_on_patch(std::span<const Vec3> x, std::span<const std::array<
     if (!tool.trocar) search.add_ball(triangle, Contact::kFarEnd, far, tool.radius);
     search.add_shaft(triangle, tool, far);
   }
+  return search.complete;
 }
 
 }  // namespace palpate

@@ -37,10 +37,10 @@ struct Contact {
 /// closest point is the projection on a convex set. An axis touches triangles with its ends, as spheres do,
 /// and edges with what lies between its ends: no closest pair of axis and face is ever lost, though an axis
 /// parallel to a face has many; only along an edge parallel to it does a contact jump, and then the place and
-/// not the normal. Appends to `contacts` as many as it has room for (its capacity is not grown). Distances
-/// are unsigned: the caller sees to it that the axis stays on the outside (see ContactSolver). O(triangles +
-/// contacts^2).
-void find_contacts_on_patch(std::span<const Vec3> x, std::span<const std::array<int, 3>> triangles,
+/// not the normal. Appends to `contacts` as many as it has room for (its capacity is not grown), and returns
+/// false if there are more. Distances are unsigned: the caller sees to it that the axis stays on the outside
+/// (see ContactSolver). O(triangles + contacts^2).
+bool find_contacts_on_patch(std::span<const Vec3> x, std::span<const std::array<int, 3>> triangles,
                             const Tool& tool, const ToolPose& pose, double margin,
                             std::vector<Contact>& contacts) noexcept;
 

@@ -263,3 +263,27 @@ TEST_CASE("a capsule that turns in place rubs with its far end") {
   CHECK(rubbed.force[2] > 0.25 * rubbed.force[1]);
   CHECK(std::abs(rested.force[2]) < 0.05 * rested.force[1]);
 }
+
+TEST_CASE("contacts without room leave the solve unconverged") {
+  // A capsule lies with its ends on two triangles on springs. With room for one contact, the solve would
+  // settle on half of the force.
+  ContactPatch patch;
+  patch.reserve(6, 2);
+  for (const double x : {-0.008, 0.008}) {
+    for (const Vec3& corner : {Vec3(-0.02, 0, -0.02), Vec3(0.02, 0, -0.02), Vec3(0, 0, 0.02)})
+      patch.free.push_back(Vec3(x, 0, 0) + 0.25 * corner);
+  }
+  patch.triangles = {{0, 2, 1}, {3, 5, 4}};
+  patch.compliance.setIdentity();
+  patch.compliance *= 1e-3;
+  const Tool tool = capsule();
+  const ToolPose pose = lying(0.0015, 0);
+  for (const int room : {1, 16}) {
+    ContactSolver solver(6, room);
+    Eigen::VectorXd u = Eigen::VectorXd::Zero(21);
+    const ContactForce force = solver.solve(patch, tool, pose, u, {patch.free, pose.p_W, pose.q_W});
+    INFO("room for " << room << ", " << force.contacts << " contacts");
+    CHECK(force.force[1] > 0.1);
+    CHECK(force.converged == (room > 1));
+  }
+}
