@@ -280,6 +280,14 @@ struct ForceSample {
     kHasModalLoads = 4096,
     kHasCuts = 8192,
     kCutting = 16384,  ///< the tip was hot, or the blade cut: what it touches may give way at any time
+    /// Beside kFlagged, why: one of these, in the order of `Doubt`.
+    kFailed = 32768,
+    kRanAway = 65536,
+    kInsideOut = 131072,
+    kNotBalanced = 262144,
+    kToolsUnsettled = 524288,
+    kContactUnsettled = 1048576,
+    kOutsideReach = 2097152,
   };
   std::uint8_t tool = 0;
   std::uint64_t number = 0;     ///< of this sample in its session, from 1
@@ -359,6 +367,7 @@ struct Telemetry {
     kDeviceLost = 8,
     kFading = 16,
     kPaused = 32,
+    kUnsettled = 64,  ///< the force is flagged for so long that it fades
   };
   using Name = std::array<std::uint8_t, kNameBytes>;  ///< ASCII, then zeros
   std::uint8_t tool = 0;

@@ -117,6 +117,7 @@ TickResult Pipeline::render(const ToolState& tool, const ForceSample* arrived,
   }
   if (arrived != nullptr && !paused_ && take(*arrived, tool.p_W, now)) {
     result.used = true;
+    result.flagged = (arrived->flags & ForceSample::kFlagged) != 0;
     result.sample = estimate_.newest();
     result.step = Time{arrived->step_ns};
     if ((arrived->flags & ForceSample::kHasErrors) != 0) result.errors = arrived->errors;
@@ -192,10 +193,22 @@ Vec3 Pipeline::safe(const Vec3& f_W, const ToolState& tool, double dt) noexcept 
 }
 
 Watchdog::Ruling Pipeline::rule_by_age(const ToolState& tool, double dt) noexcept {
-  if (estimate_.newest().number == 0) return watchdog_.rule({}, dt);
+  if (estimate_.newest().number == 0) return watchdog_.rule({}, {}, dt);
   const Time age = Time{tool.t_ns} - estimate_.newest().t;
   if (!paused_) stats_.age_ns.add(age.count());
-  return watchdog_.rule(paused_ ? std::max(age, kOutage + Time{1}) : age, dt);
+  const Time now{tool.t_ns}, unsettled = now - unsettled_.since.value_or(now);
+  stats_.unsettled += unsettled > Watchdog::kUnsettled ? 1 : 0;
+  return watchdog_.rule(paused_ ? std::max(age, kOutage + Time{1}) : age, unsettled, dt);
+}
+
+std::optional<Doubt> Pipeline::doubt() const noexcept {
+  const Time now{rendered_.t_ns};
+  if (now - unsettled_.since.value_or(now) <= Watchdog::kUnsettled) return {};
+  for (const Doubt doubt : {Doubt::kFailed, Doubt::kRanAway, Doubt::kInsideOut, Doubt::kNotBalanced,
+                            Doubt::kTools, Doubt::kOutsideReach}) {
+    if ((unsettled_.flags & ForceSample::kFailed << static_cast<unsigned>(doubt)) != 0) return doubt;
+  }
+  return Doubt::kContact;
 }
 
 std::int64_t Pipeline::age_ns() const noexcept {
@@ -225,6 +238,9 @@ bool Pipeline::take(const ForceSample& arrived, const Vec3& p_W, Time now) noexc
   const Time lead = now - estimate_.newest().t + estimate_.period() / 2;
   lead_ += (std::min(lead, kOutage) - lead_) / (stats_.samples == 0 ? 1 : kLeadFilter);
   ++stats_.samples;
+  const bool flagged = (arrived.flags & ForceSample::kFlagged) != 0;
+  stats_.flagged += flagged ? 1 : 0;
+  unsettled_ = {flagged ? std::optional(unsettled_.since.value_or(now)) : std::nullopt, arrived.flags};
   if (estimate_.period() > Time::zero()) {
     stats_.sample_path_m += (arrived.p_W - before).norm();
     stats_.sample_path_s += to_seconds(estimate_.period());

@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 
+#include "common/doubt.h"
 #include "common/histogram.h"
 #include "common/workspace.h"
 #include "haptic_client/device/device.h"
@@ -24,6 +25,7 @@ struct TickResult {
   Vec3 f_D = Vec3::Zero();   ///< to the device, N
   protocol::ToolState tool;  ///< to the server
   bool used = false;         ///< `sample` arrived, was newer, and is the newest now
+  bool flagged = false;      ///< the server calls its force not settled
   Sample sample{};
   Time step{};                                      ///< that the server spent on it
   std::optional<DiscretisationErrors> errors = {};  ///< of its force, where the server published them
@@ -33,6 +35,8 @@ struct TickResult {
 struct PipelineStats {
   Histogram age_ns;                ///< of the newest sample, each tick that has one
   std::uint64_t samples = 0;       ///< used
+  std::uint64_t flagged = 0;       ///< of these, those whose force the server calls not settled
+  std::uint64_t unsettled = 0;     ///< ticks that faded for that reason
   std::uint64_t overtaken = 0;     ///< dropped: not newer than what was there
   std::uint64_t published = 0;     ///< ticks since the first sample
   std::uint64_t stepped_down = 0;  ///< ticks in which a simpler law stood in for the chosen one
@@ -93,6 +97,8 @@ class Pipeline {
   /// Age of the newest sample at the last tick, ns; -1 before there is one. In a pause, of the newest that
   /// said so.
   std::int64_t age_ns() const noexcept;
+  /// Why the force fades though samples come: those of the last 100 ms are flagged. None: it does not.
+  std::optional<Doubt> doubt() const noexcept;
   const Limiter& limiter() const noexcept { return limiter_; }
   const Watchdog& watchdog() const noexcept { return watchdog_; }
   const Passivity& passivity() const noexcept { return passivity_; }
@@ -128,6 +134,11 @@ class Pipeline {
   bool rearm_requested_ = false, paused_ = false;
   bool placed_ = false;        // the device has said once where it is
   std::int64_t heard_ns_ = 0;  // when a sample last came, of a pause, too
+  /// Flagged samples in a row, the newest among them.
+  struct Unsettled {
+    std::optional<Time> since = {};  // when the first came; none: the newest is settled
+    std::uint32_t flags = 0;         // of the newest
+  } unsettled_;
   PipelineStats stats_;
 };
 

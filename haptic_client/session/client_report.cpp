@@ -272,6 +272,12 @@ void print_tool(const Json& tool) {
       number(force, "max_newton"));
   if (const auto jumps = jumps_in(force, "unexplained_jump"))
     fmt::print("          {}\n", unexplained_text(*jumps));
+  if (number(force, "flagged") > 0) {
+    fmt::print(
+        "          {:.0f} samples were flagged by the server as not settled; {:.0f} ticks faded for that "
+        "reason\n",
+        number(force, "flagged"), number(safety, "unsettled"));
+  }
   if (!force["stand_ins"].empty() || number(force, "surface_pages") > 0) {
     fmt::print("  law     {}; {:.0f} pages of the surface came\n",
                !force["stand_ins"].empty()
@@ -331,9 +337,13 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
   const auto pairs = static_cast<double>(stats.sample_pairs);
   Json rendered = at_work_report(config.method, stats.substitutes, stats.published);
   rendered.update(error_budget_report(config.method, observation));
-  Json force = {{"samples", stats.samples},           {"overtaken", stats.overtaken},
-                {"stepped_down", stats.stepped_down}, {"stand_ins", substitutes_report(stats.substitutes)},
-                {"surface_pages", stats.pages},       {"age_ms", quantiles(stats.age_ns, 1e6)},
+  Json force = {{"samples", stats.samples},
+                {"overtaken", stats.overtaken},
+                {"flagged", stats.flagged},
+                {"stepped_down", stats.stepped_down},
+                {"stand_ins", substitutes_report(stats.substitutes)},
+                {"surface_pages", stats.pages},
+                {"age_ms", quantiles(stats.age_ns, 1e6)},
                 {"max_newton", stats.max_newton}};
   add_to(force, "unexplained_jump", observation.scoring().unexplained_jumps());
   return {{"device", config.device.name},
@@ -355,6 +365,7 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
             {"weak_s", pipeline.rendered_fraction().total_s()},
             {"largest_debt_mj", 1e3 * pipeline.passivity().counts().largest_debt_j},
             {"ramped", pipeline.watchdog().ramped()},
+            {"unsettled", stats.unsettled},
             {"lost", stats.lost},
             {"clutched", stats.clutched},
             {"not_finite", limiter.not_finite},

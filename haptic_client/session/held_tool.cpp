@@ -129,6 +129,19 @@ void HeldTool::report_weakness() {
   weak_ = weak;
 }
 
+/// A force that the simulation does not stand behind is not rendered for long, and whoever holds the device
+/// should know why.
+void HeldTool::report_doubt() {
+  const std::optional<Doubt> doubt = loop_.doubt;
+  if (doubt && doubt != doubt_) {
+    log::warning(
+        "{}the force is not settled: {}; it goes to zero (the server flags its answers, and says more)",
+        name_, kDoubtTexts[static_cast<std::size_t>(*doubt)]);
+  }
+  if (!doubt && doubt_) log::info("{}the force is settled again: soft start", name_);
+  doubt_ = doubt;
+}
+
 void HeldTool::look() {
   end_if_stuck();
   const std::int64_t age = loop_.newest_age_ns;
@@ -150,6 +163,7 @@ void HeldTool::look() {
   }
   fault_ = fault;
   report_weakness();
+  report_doubt();
   recording_.look();
   link_.watcher.poll(name_);
   if (const char* status = device_->status(); status != device_status_) {

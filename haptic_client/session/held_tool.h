@@ -42,8 +42,8 @@ class HeldTool {
   void stop();
   void rearm() { loop_.rearm = true; }
 
-  /// Prints messages, once each: the loss and the return of the server, a latched fault, a force that is
-  /// mostly not rendered, the requests of the device. Call it ten times a second.
+  /// Prints messages, once each: the loss and the return of the server, a latched fault, a force that is not
+  /// settled or mostly not rendered, the requests of the device. Call it ten times a second.
   void look();
   /// Force, age and ticks, for a line of progress.
   std::string progress() const;
@@ -56,6 +56,7 @@ class HeldTool {
  private:
   void end_if_stuck();
   void report_weakness();
+  void report_doubt();
 
   ClientConfig config_;
   ToolFiles files_;
@@ -76,6 +77,7 @@ class HeldTool {
   int standstills_ = 0;      // looks since then
   bool silent_ = false, weak_ = false, paused_ = false;
   Fault fault_ = Fault::kNone;
+  std::optional<Doubt> doubt_;
   std::jthread recording_thread_, net_thread_, haptic_thread_;
 };
 

@@ -84,6 +84,7 @@ void TelemetryMaker::complete(const TickResult& result, const Pipeline& pipeline
   if ((result.tool.flags & protocol::ToolState::kDeviceLost) != 0) next_.flags |= Telemetry::kDeviceLost;
   if (pipeline.paused()) next_.flags |= Telemetry::kPaused;
   if (pipeline.age_ns() > kOutage.count()) next_.flags |= Telemetry::kFading;
+  if (pipeline.doubt()) next_.flags |= Telemetry::kUnsettled;
   next_.tool = result.tool.tool;
   next_.t_ns = result.tool.t_ns;
   next_.p_W = result.tool.p_W;

@@ -19,7 +19,7 @@ TraceWriter::TraceWriter(const std::filesystem::path& file, const std::vector<st
       laws_(laws.size()),
       rendered_(static_cast<std::size_t>(std::ranges::find(laws, rendered) - laws.begin())) {
   text_ =
-      "tick,t_s,px_m,py_m,pz_m,fx_n,fy_n,fz_n,sample,sample_t_s,sample_n,mesh_percent,motion_percent,"
+      "tick,t_s,px_m,py_m,pz_m,fx_n,fy_n,fz_n,sample,sample_t_s,sample_n,flagged,mesh_percent,motion_percent,"
       "reference_n,extrapolation_n";
   for (const std::string& law : laws) text_ += fmt::format(",{}_n", law);
   text_ += '\n';
@@ -34,9 +34,10 @@ void TraceWriter::add(const TickRecord& tick) {
   fmt::format_to(out, "{},{:.9f},{},{},{},{},{},{},{}", result.tool.tick, to_seconds(t - *start_), p[0], p[1],
                  p[2], f[0], f[1], f[2], result.tool.newest_sample);
   if (result.used) {
-    fmt::format_to(out, ",{:.9f},{}", to_seconds(result.sample.t - *start_), result.sample.f.norm());
+    fmt::format_to(out, ",{:.9f},{},{}", to_seconds(result.sample.t - *start_), result.sample.f.norm(),
+                   result.flagged ? 1 : 0);
   } else {
-    text_ += ",,";
+    text_ += ",,,";
   }
   const DiscretisationErrors errors = result.errors.value_or(DiscretisationErrors{});
   add_error(errors.mesh);

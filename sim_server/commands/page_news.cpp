@@ -94,7 +94,8 @@ void ToolEvents::note_states(std::uint16_t flags) {
                                    {Telemetry::kClutched, Name{"clutched"}},
                                    {Telemetry::kDeviceLost, Name{"device_lost"}},
                                    {Telemetry::kFading, Name{"fading"}},
-                                   {Telemetry::kPaused, Name{"paused"}}}) {
+                                   {Telemetry::kPaused, Name{"paused"}},
+                                   {Telemetry::kUnsettled, Name{"unsettled"}}}) {
     if ((flags & flag) != 0) client_.state_names[client_.states++] = name;
   }
 }

@@ -72,6 +72,7 @@ ContactFinder::ContactFinder(std::span<const Vec3> rest, std::vector<Triangle> c
     max_triangles_ = std::max(max_triangles_, near);
   }
   note_openings();
+  note_beyond();
   const int all = room > kUsualRoom ? std::numeric_limits<int>::max() : static_cast<int>(triangles_.size());
   // An axis may lie along a part as dense as that, but hardly all of it.
   const double balls = std::min(kMostBalls, 1 + length / (2 * reach));
@@ -94,6 +95,17 @@ void ContactFinder::change_surface(std::span<const Vec3> rest, std::vector<Trian
   closed_ = std::move(closed);
   triangles_ = std::move(touchable);
   note_openings();
+  note_beyond();
+}
+
+void ContactFinder::note_beyond() {
+  beyond_.clear();
+  if (triangles_.size() == closed_.size()) return;
+  std::vector<Triangle> touchable = triangles_;
+  std::ranges::sort(touchable);
+  for (const Triangle& t : closed_) {
+    if (!std::ranges::binary_search(touchable, t)) beyond_.push_back(t);
+  }
 }
 
 void ContactFinder::fit(std::span<const Vec3> positions) const noexcept {
@@ -178,6 +190,19 @@ bool ContactFinder::inside(std::span<const Vec3> positions, const Vec3& p) const
 Vec3 ContactFinder::Foot::of(std::span<const Vec3> at_vertices) const noexcept {
   const Vec3 &a = at_vertices[triangle[0]], &b = at_vertices[triangle[1]], &c = at_vertices[triangle[2]];
   return weight[0] * a + weight[1] * b + weight[2] * c;
+}
+
+double ContactFinder::depth_beyond(std::span<const Vec3> positions, const Vec3& p, const Vec3& q,
+                                   double radius) const noexcept {
+  if (beyond_.empty()) return 0;
+  const bool is_inside = inside(positions, p);
+  double nearest = is_inside ? std::numeric_limits<double>::max() : radius;
+  for (const Triangle& t : beyond_) {
+    const Vec3 &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
+    if (may_reach(a, b, c, p, q, nearest))
+      nearest = std::min(nearest, nearest_on_segment(p, q, a, b, c).distance);
+  }
+  return is_inside ? radius + nearest : radius - nearest;
 }
 
 ContactFinder::Foot ContactFinder::closest_on(int triangle, std::span<const Vec3> positions,

@@ -42,6 +42,11 @@ class ContactFinder {
   /// along x leaves, less those that it enters. O(triangles), of which a few are looked at.
   bool inside(std::span<const Vec3> positions, const Vec3& p) const noexcept;
 
+  /// Returns how deep a tool with this axis and radius (m) is in the surface that it may not touch, m; 0: it
+  /// does not meet it. O(triangles), of which a few are looked at; nothing where it may touch all.
+  double depth_beyond(std::span<const Vec3> positions, const Vec3& p, const Vec3& q,
+                      double radius) const noexcept;
+
   /// A point of the surface, on one of its triangles.
   struct Foot {
     Triangle triangle{};
@@ -75,9 +80,10 @@ class ContactFinder {
   Foot closest_on(int triangle, std::span<const Vec3> positions, const Vec3& p) const noexcept;
 
   void note_openings();
+  void note_beyond();
   void fit(std::span<const Vec3> positions) const noexcept;
 
-  std::vector<Triangle> closed_, triangles_;
+  std::vector<Triangle> closed_, triangles_, beyond_;  // all; those that it may touch, and may not
   std::vector<int> held_;
   std::vector<char> opens_;  // of triangles_: whether a tool can come in there
   mutable Bvh bvh_;  // of triangles_; fitted anew for each question, as the surface is another each time

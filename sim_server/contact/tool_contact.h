@@ -119,6 +119,9 @@ class ToolContact {
   int nearest_vertex(const Vec3& p_W, const Tissue& tissue) const noexcept {
     return finder_.nearest_vertex(tissue.positions, p_W);
   }
+  /// Returns how deep it is in tissue that its `reach` leaves out, m: it feels nothing of that. 0: not at
+  /// all.
+  double depth_outside_reach(std::span<const Vec3> positions) const noexcept;
   /// Away from the tissue, on which it has no load any more: no force.
   void separate() noexcept;
   /// Adds the tangent to `force`. Of the last place where contact was solved: before another is asked for.

@@ -8,6 +8,7 @@
 namespace palpate::sim {
 namespace {
 
+constexpr double kGrazes = 0.1;    // of the tool radius: what the surface beside a touched one may bulge by
 constexpr double kMaxPlaces = 64;  // on the axis of a tool that appears: whether they are inside
 
 }  // namespace
@@ -68,6 +69,13 @@ Vec3 ToolContact::place_at_entry(const ToolPose& pose, const Vec3& inside, doubl
   if (tool_.trocar && fraction > 0)
     return tool_.trocar->pivot_W + (outside - tool_.trocar->pivot_W) / (1 - fraction);
   return outside + (pose.p_W - inside);
+}
+
+double ToolContact::depth_outside_reach(std::span<const Vec3> positions) const noexcept {
+  if (!now_.placed) return 0;
+  const ToolPose tip(now_.place.p_W + now_.tip_offset, now_.place.q_W);
+  const double depth = finder_.depth_beyond(positions, tip.p_W, far_end(tool_, tip), tool_.radius);
+  return depth > kGrazes * tool_.radius ? depth : 0;
 }
 
 void ToolContact::store_side(const ToolTissue& tissue) noexcept {

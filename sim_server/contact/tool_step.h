@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/contact/linearisation.h"
+#include "common/doubt.h"
 #include "sim_server/client_model/slow_modes.h"
 #include "sim_server/contact/tool_contact.h"
 
@@ -45,6 +46,7 @@ struct ToolInput {
 /// Outputs of a step for one tool: the force on it, and what was asked beyond that, if its pose was known and
 /// the force is not flagged.
 struct ToolAnswer : ToolForce {
+  Doubt doubt = Doubt::kContact;   ///< of a flagged force: why
   Vec3 mean_force = Vec3::Zero();  ///< N, over the step; equal to `force` where contact is solved once
   /// Velocity of the organ's surface by its supports where the tool touches, or else nearest to it, m/s,
   /// world. Set with `at_tool` and `ahead`; zero where all supports rest.

@@ -223,7 +223,8 @@ ForceSample ServedTools::sample_of(std::size_t tool, const protocol::ToolState& 
                      .f_W = answer.force,
                      .torque_W = answer.torque};
   if (answer.contacts > 0) sample.flags |= ForceSample::kInContact;
-  if (answer.flagged) sample.flags |= ForceSample::kFlagged;
+  if (answer.flagged)
+    sample.flags |= ForceSample::kFlagged | ForceSample::kFailed << static_cast<unsigned>(answer.doubt);
   publish_nearby(answer, sample);
   if (surfaces_[tool].version != 0) publish_surface(answer, surfaces_[tool], sample);
   if (simulation_.instants() > 1 && answer.at_tool) {

@@ -184,23 +184,25 @@ std::span<const ToolAnswer> Simulation::step(std::span<const ToolInput> inputs, 
     ++state_.failures.other;
     hold_answers(inputs);
   }
-  count_flagged();
+  explain_flagged();
   return state_.answers;
 }
 
-void Simulation::count_flagged() noexcept {
-  if (std::ranges::none_of(state_.answers, &ToolAnswer::flagged)) return;
+/// Says why answers are flagged, and counts the step by the first reason.
+void Simulation::explain_flagged() noexcept {
+  const auto first = std::ranges::find_if(state_.answers, &ToolAnswer::flagged);
+  if (first == state_.answers.end()) return;
   using Balance = NonlinearModel::Balance;
   const NonlinearModel* const nonlinear = tissue_.traits.nonlinear;
   const Balance balance = nonlinear ? nonlinear->balance() : Balance::kBalanced;
-  FlaggedSteps& flagged = state_.flagged;
-  std::uint64_t& reason = state_.failed                     ? flagged.threw
-                          : state_.ran_away                 ? flagged.ran_away
-                          : balance == Balance::kInsideOut  ? flagged.inside_out
-                          : balance == Balance::kUnbalanced ? flagged.not_balanced
-                          : !tools_.settled()               ? flagged.tools
-                                                            : flagged.contact;
-  ++reason;
+  const std::optional<Doubt> of_all = state_.failed                     ? std::optional(Doubt::kFailed)
+                                      : state_.ran_away                 ? Doubt::kRanAway
+                                      : balance == Balance::kInsideOut  ? Doubt::kInsideOut
+                                      : balance == Balance::kUnbalanced ? Doubt::kNotBalanced
+                                      : !tools_.settled()               ? std::optional(Doubt::kTools)
+                                                                        : std::nullopt;
+  for (ToolAnswer& answer : state_.answers) answer.doubt = of_all.value_or(answer.doubt);
+  state_.flagged.count(first->doubt);
 }
 
 /// Holds the answers after a step that threw. The forces of a tissue that answers no more fade.
@@ -254,6 +256,11 @@ void Simulation::answer(std::size_t tool, const ToolInput& input, double dt) {
   if (!publishes_tangents) answer.force = state_.means[tool].late;
   answer.mean_force = state_.means[tool].all;
   if (cut_) cut_->resist(tool, contact, dt, answer);
+  const double depth = answer.flagged ? 0 : contact.depth_outside_reach(tissue_.positions);
+  if (depth == 0) return;
+  answer.flagged = true;
+  answer.doubt = Doubt::kOutsideReach;
+  state_.flagged.deepest = std::max(state_.flagged.deepest, depth);
 }
 
 /// Takes a tool away: the tissue becomes free of it.

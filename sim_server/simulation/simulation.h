@@ -132,7 +132,7 @@ class Simulation {
   void move_organ(double dt);
   void answer(std::size_t tool, const ToolInput& input, double dt);
   void hold_answers(std::span<const ToolInput> inputs) noexcept;
-  void count_flagged() noexcept;
+  void explain_flagged() noexcept;
   void release_tool(std::size_t tool) noexcept;
   bool ran_away() const noexcept;
   CutOrgan cut_organ() { return {*organ_.mesh, organ_.surface, organ_.rest, tissue_, tools_.all()}; }
