@@ -4,6 +4,10 @@
 
 namespace palpate {
 
+/// Real-time priorities (SCHED_FIFO) of both programs: a haptic tick waits for nobody; a force that waits
+/// behind a step of the simulation is older than it need be.
+inline constexpr int kHapticPriority = 80, kNetworkPriority = 50, kSimulationPriority = 40;
+
 /// Locks the program's memory (mlockall) so that no page fault stalls a loop. Returns an empty text, or one
 /// sentence that says what the system refused and what to change. Call once, after set-up.
 std::string lock_memory();

@@ -24,8 +24,6 @@ struct HapticMailboxes {
   Doorbell bell;
 };
 
-constexpr int kHapticPriority = 80;  ///< of the haptic thread (SCHED_FIFO), where the system grants it
-
 /// Measurements of the loop; read them when the loop has ended.
 struct HapticLoopStats {
   std::uint64_t ticks = 0, missed = 0;

@@ -69,10 +69,8 @@ bool HeldTool::connect(Time patience) {
       recorder_->run(stop);
     });
   }
-  net_thread_ = std::jthread([this] {
-    name_thread("palpate-net");
-    link_.run();
-  });
+  net_thread_ = std::jthread([this] { link_.run(); });
+  make_realtime(net_thread_.native_handle(), "palpate-net", kNetworkPriority);  // `start` says if refused
   for (const Time start = now(); !link_.welcomed;) {
     if (wait_for_interrupt(std::chrono::milliseconds(20))) return false;
     if (now() - start < patience) continue;
@@ -86,9 +84,10 @@ bool HeldTool::connect(Time patience) {
 void HeldTool::start(Heartbeat* heartbeat) {
   loop_.heartbeat = heartbeat;
   haptic_thread_ = std::jthread([this](const std::stop_token& stop) { loop_.run(stop); });
-  if (const auto refused = make_realtime(haptic_thread_.native_handle(), "palpate-haptic", kHapticPriority);
-      !refused.empty())
-    log::warning("{}{}", name_, refused);
+  const std::string refused =
+      make_realtime(haptic_thread_.native_handle(), "palpate-haptic", kHapticPriority);
+  if (!refused.empty()) log::warning("{}{}", name_, refused);
+  real_time_ = refused.empty();
 }
 
 /// The device first, then the link, so that its last poses still travel, then the recording of them.
@@ -182,6 +181,7 @@ std::string HeldTool::progress() const {
 Json HeldTool::report() const {
   Json tool = tool_report(config_, pipeline_, observation_);
   tool["loop"] = loop_report(rate_of(config_), loop_.stats());
+  tool["loop"]["real_time"] = real_time_;
   tool["link"] = link_report(link_);
   tool["link"]["rate_hz"] = link_.session().welcome().rate_hz;
   const PipelineStats& stats = pipeline_.stats();

@@ -75,7 +75,7 @@ class HeldTool {
   const char* device_status_ = "";
   std::uint64_t ticks_ = 0;  // when looked at last
   int standstills_ = 0;      // looks since then
-  bool silent_ = false, weak_ = false, paused_ = false;
+  bool silent_ = false, weak_ = false, paused_ = false, real_time_ = false;
   Fault fault_ = Fault::kNone;
   std::optional<Doubt> doubt_;
   std::jthread recording_thread_, net_thread_, haptic_thread_;

@@ -33,8 +33,6 @@
 namespace palpate::sim {
 namespace {
 
-constexpr int kPriority = 40;  // below the haptic loop of a client on the same machine
-
 void warn_if_refused(const std::string& refused) {
   if (!refused.empty()) log::warning("{}", refused);
 }
@@ -276,7 +274,7 @@ std::jthread start_recording(protocol::Recorder* recorder) {
 std::jthread start_viewing(LiveView* view) {
   if (view == nullptr) return {};
   return std::jthread([view](const std::stop_token& stop) {
-    name_thread("palpate-view");
+    make_background("palpate-view");  // pages may be late; forces may not
     const std::stop_callback ends(stop, [view] { view->viewer().stop(); });
     view->viewer().run();
   });
@@ -288,14 +286,14 @@ template <class Watching>
 auto serve_until(SimLoop& loop, NetLink& link, protocol::Recorder* recorder, LiveView* view,
                  const Watching& watching) {
   const std::jthread recording = start_recording(recorder);
-  const std::jthread net([&](const std::stop_token& stop) {
-    name_thread("palpate-net");
+  std::jthread net([&](const std::stop_token& stop) {
     const std::stop_callback ends(stop, [&] { link.stop(); });
     link.run();
   });
   const std::jthread viewing = start_viewing(view);
   std::jthread sim([&](const std::stop_token& stop) { loop.run(stop); });
-  warn_if_refused(make_realtime(sim.native_handle(), "palpate-sim", kPriority));
+  make_realtime(net.native_handle(), "palpate-net", kNetworkPriority);  // refused as the next is, or not
+  warn_if_refused(make_realtime(sim.native_handle(), "palpate-sim", kSimulationPriority));
   warn_if_refused(lock_memory());  // after the threads, whose stacks a small limit would not hold
   return watching();               // then each is asked to stop, the simulation first
 }
