@@ -18,22 +18,21 @@ Recorder::Recorder(const std::filesystem::path& file, std::optional<std::uint64_
       ring_(kRoom),
       epoch_(monotonic_epoch()) {}
 
-/// F.pcap, F-2.pcap, F-3.pcap ...
-std::filesystem::path Recorder::path_of(std::uint64_t number) const {
-  if (number == 1) return path_;
-  std::filesystem::path next = path_;
+std::filesystem::path Recorder::path_of(const std::filesystem::path& file, std::uint64_t number) {
+  if (number == 1) return file;
+  std::filesystem::path next = file;
   return next.replace_filename(
-      fmt::format("{}-{}{}", path_.stem().string(), number, path_.extension().string()));
+      fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string()));
 }
 
 void Recorder::start_next() noexcept {
   ended_ = written();
   part_.reset();
   try {
-    part_.emplace(path_of(ended_.files + 1));
+    part_.emplace(path_of(path_, ended_.files + 1));
     std::error_code expired;
     if (ended_.files >= kStoredFiles)
-      std::filesystem::remove(path_of(ended_.files + 1 - kStoredFiles), expired);
+      std::filesystem::remove(path_of(path_, ended_.files + 1 - kStoredFiles), expired);
   } catch (const std::exception&) {
     failed.store(true, std::memory_order_relaxed);
   }

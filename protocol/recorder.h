@@ -28,6 +28,9 @@ class Recorder {
   /// newest are kept; absent: one file of any size.
   explicit Recorder(const std::filesystem::path& file, std::optional<std::uint64_t> most_bytes = {});
 
+  /// Returns the file of a part of a recording, from 1: F.pcap, F-2.pcap, F-3.pcap ...
+  static std::filesystem::path path_of(const std::filesystem::path& file, std::uint64_t number);
+
   /// Notes one datagram that was sent or received at `t` (monotonic clock of this machine). Network thread
   /// only; copies it, never waits. Bytes beyond the longest datagram of ours are not kept.
   void note(Time t, const Endpoint& from, const Endpoint& to, std::span<const std::byte> bytes) noexcept;
@@ -76,7 +79,6 @@ class Recorder {
     CaptureWriter capture;
     bool named = false;
   };
-  std::filesystem::path path_of(std::uint64_t number) const;
   void start_next() noexcept;
   Stats written() const;
 

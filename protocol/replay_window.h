@@ -71,6 +71,13 @@ class ReplayWindow {
   }
   /// True if the last number taken is the highest.
   bool in_order() const noexcept { return in_order_; }
+  /// The sender, as it says itself, is at `sequence` only: the next number is that or higher, and all below
+  /// were seen.
+  void go_back_to(std::uint64_t sequence) noexcept {
+    if (highest_ < sequence) return;
+    highest_ = sequence - 1;
+    seen_ = ~std::uint64_t{0};
+  }
   /// The sender has gone on so far unseen: the next number is `sequence`.
   void start_at(std::uint64_t sequence) noexcept { highest_ = sequence - 1; }
 

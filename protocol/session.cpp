@@ -59,6 +59,10 @@ void ClientSession::welcomed_by(const Datagram& datagram, const Welcome& welcome
   if (another && welcome.attempt <= welcomed_attempt_) return;
   if (datagram.header.session == departed_.session && heard_lately(now)) return;
   welcomed_attempt_ = std::max(welcomed_attempt_, welcome.attempt);
+  if (!another && !heard_lately(now)) {  // wild numbers may have moved the window ahead of the server
+    current_.window.go_back_to(datagram.header.sequence);
+    current_.samples = {};
+  }
   last_heard_ = now;
   refused_.reset();
   if (another) {  // a new server, the first, or the one before
@@ -104,12 +108,11 @@ const Message* ClientSession::receive(const Datagram& datagram, Time now, LinkSt
   if (!checked(datagram, current_.keys.in, stats)) return nullptr;
   if (const auto* sample = std::get_if<ForceSample>(&datagram.message);
       sample && sample->tool == welcome_.tool) {
-    if (!current_.window.accept(datagram.header.sequence, stats)) return nullptr;
+    if (!current_.window.accept(datagram.header.sequence, stats) ||
+        !current_.samples.accept(sample->number, datagram.header.sequence, current_.window.in_order(), stats))
+      return nullptr;  // the newest value wins
     last_heard_ = now;
-    return current_.samples.accept(sample->number, datagram.header.sequence, current_.window.in_order(),
-                                   stats)
-               ? &datagram.message
-               : nullptr;  // the newest value wins
+    return &datagram.message;
   }
   const auto* page = std::get_if<SurfacePage>(&datagram.message);
   const auto* pointer = std::get_if<Pointer>(&datagram.message);
@@ -235,10 +238,10 @@ ServerSessions::Outcome ServerSessions::receive(const Datagram& datagram, const 
   }
   if (!found->window.accept(datagram.header.sequence, stats)) return {};
   if (telemetry != nullptr) return {.telemetry = telemetry};
-  found->last_heard = now;
   if (found->window.in_order()) found->endpoint = from;  // another one only with a key
   if (!found->ticks.accept(tool_state->tick, datagram.header.sequence, found->window.in_order(), stats))
     return {.asking = tool_state};  // the newest value wins
+  found->last_heard = now;
   return {.tool_state = tool_state, .asking = tool_state};
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <asio.hpp>
 #include <charconv>
+#include <poll.h>
 
 #include "common/error.h"
 #include "protocol/udp_ancillary.h"
@@ -66,6 +67,14 @@ Endpoint resolve(const std::string& text, const std::string& where) {
   const auto v4 = std::ranges::find_if(found, [](const auto& e) { return e.endpoint().address().is_v4(); });
   Endpoint endpoint = from_asio(v4 != found.end() ? v4->endpoint() : found.begin()->endpoint());
   endpoint.port = static_cast<std::uint16_t>(port);
+  if (to_asio(endpoint).address().is_v6() && to_asio(endpoint).address().to_v6().is_link_local() &&
+      endpoint.scope == 0) {
+    fail(
+        "{}: \"{}\": an fe80 address exists once on each network interface; say on which, such as "
+        "[{}%eth0]:{} (`ip "
+        "link` lists them)",
+        where, text, host, port);
+  }
   return endpoint;
 }
 
@@ -172,6 +181,21 @@ Endpoint UdpSocket::local_towards(const Endpoint& peer) const {
   const udp::endpoint towards = probe.local_endpoint(failed);
   if (!failed) own.address = from_asio(towards).address;
   return own;
+}
+
+std::error_code UdpSocket::answer_of(const Endpoint& peer, Time patience) {
+  asio::io_context context;
+  udp::socket probe(context);
+  std::error_code failed;
+  probe.connect(to_asio(peer), failed);
+  if (failed) return failed;
+  probe.send(asio::buffer("", 0), 0, failed);
+  pollfd answer{probe.native_handle(), POLLIN, 0};
+  poll(&answer, 1, static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(patience).count()));
+  int error = 0;
+  socklen_t size = sizeof error;
+  getsockopt(probe.native_handle(), SOL_SOCKET, SO_ERROR, &error, &size);
+  return {error, std::generic_category()};
 }
 
 void UdpSocket::run(Doorbell& doorbell, Time timer_period, const Handlers& handlers) {

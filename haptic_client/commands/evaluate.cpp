@@ -110,6 +110,27 @@ std::optional<Sample> take_sample(const CapturedTick& tick, const std::vector<Re
   return sample;
 }
 
+/// How far the tool was, at most, from where that of the truth was at the same time, m.
+struct FromTruth {
+  const Truth* truth;
+  double most = 0;
+  void add(const Sample& sample) {
+    if (truth != nullptr) most = std::max(most, truth->distance(sample.p, sample.t).value_or(0));
+  }
+};
+
+/// That both captures are of one motion: the line between two samples of a truth is off by micrometres.
+void require_same_motion(const FromTruth& from, const std::filesystem::path& file,
+                         const EvaluateOptions& options) {
+  constexpr double kSame = 1e-4;  // m
+  if (from.most <= kSame) return;
+  fail(
+      "{}: its tool is up to {:.3g} mm away from that of --truth {} at the same time: another motion, or "
+      "begun at "
+      "another time; record both with the same --trajectory",
+      file.string(), 1e3 * from.most, options.truth->string());
+}
+
 void require_scored(const Evaluation& e, const std::filesystem::path& file) {
   if (e.samples < 2 || !(e.seconds > 0))
     fail("{}: has fewer than two force samples; nothing to evaluate", file.string());
@@ -130,6 +151,7 @@ Evaluation run(const std::filesystem::path& file, const std::vector<std::string>
   std::optional<protocol::ToolState> before;
   ErrorSums ignored;
   KnownSurface surface;
+  FromTruth from_truth{truth};
   std::vector<Request> request;
   for (const std::string& law : laws) request.push_back(request_of(law));
   for (CapturedTick tick; session.next(tick);) {
@@ -137,6 +159,7 @@ Evaluation run(const std::filesystem::path& file, const std::vector<std::string>
     if (tick.arrived && (tick.arrived->number - 1) % options.keep != 0) tick.arrived.reset();
     take_pages(tick, options.compliance, surface, e);
     const std::optional<Sample> sample = take_sample(tick, request, surface, e);
+    if (sample) from_truth.add(*sample);
     for (auto* all : {&e.plain, &e.blended}) {
       for (Scoring& scoring : *all) scoring.tick(tick.state.p_W, t, sample ? &*sample : nullptr, ignored);
     }
@@ -148,6 +171,7 @@ Evaluation run(const std::filesystem::path& file, const std::vector<std::string>
     if (tick.state.tick % 4096 == 0) progress(file.filename().string(), session.fraction());
   }
   progress(file.filename().string(), 1);
+  require_same_motion(from_truth, file, options);
   require_scored(e, file);
   return e;
 }

@@ -14,6 +14,7 @@
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "haptic_client/session/client_report.h"
 #include "haptic_client/session/trace.h"
+#include "protocol/recorder.h"
 #include "protocol/udp_socket.h"
 
 namespace palpate::client {
@@ -48,6 +49,16 @@ std::size_t index_of(const CaptureSurvey& found, const ReplayOptions& options) {
   return chosen;
 }
 
+/// A recording that grew beyond its size goes on in another file.
+void say_if_it_goes_on(const std::filesystem::path& capture) {
+  const std::filesystem::path next = protocol::Recorder::path_of(capture, 2);
+  if (!std::filesystem::exists(next)) return;
+  log::warning(
+      "{}: beside it lies {}, in which a recording of this name goes on; to replay both: "
+      "`mergecap -a -F pcap -w ALL.pcap {} {}`",
+      capture.string(), next.filename().string(), capture.string(), next.string());
+}
+
 }  // namespace
 
 ChosenSession choose_session(const ReplayOptions& options) {
@@ -59,6 +70,7 @@ ChosenSession choose_session(const ReplayOptions& options) {
       survey(options.capture, [&](double fraction) { progress("reading the capture", fraction); });
   const std::size_t index = index_of(found, options);
   if (!found.trouble.empty()) log::warning("{}: {}", options.capture.string(), found.trouble);
+  say_if_it_goes_on(options.capture);
   return {std::move(found), index};
 }
 

@@ -37,6 +37,11 @@ bool send_zero(UsbTransport& port) {
   return sent;
 }
 
+/// True of what a text is made of. Bytes of UTF-8 beyond ASCII are found in images as well.
+bool is_text(char byte) {
+  return (byte >= ' ' && byte <= '~') || byte == '\n' || byte == '\r' || byte == '\t';
+}
+
 }  // namespace
 
 std::vector<std::byte> read_firmware(const std::filesystem::path& file) {
@@ -49,6 +54,12 @@ std::vector<std::byte> read_firmware(const std::filesystem::path& file) {
   if (bytes.size() < kLeast || bytes.size() > kMost)
     fail("{}: has {} bytes; a firmware image of the Falcon has {} to {}", file.string(), bytes.size(), kLeast,
          kMost);
+  if (std::ranges::all_of(bytes, is_text))
+    fail(
+        "{}: is a text, a web page perhaps, and no firmware image of the Falcon, which is binary; download "
+        "the image "
+        "itself",
+        file.string());
   std::vector<std::byte> image;
   for (const char byte : bytes) image.push_back(static_cast<std::byte>(byte));
   return image;

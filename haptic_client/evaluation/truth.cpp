@@ -18,7 +18,7 @@ Truth::Truth(const std::filesystem::path& file, const std::function<void(double 
   for (CapturedTick tick; session.next(tick);) {
     if (!tick.arrived) continue;
     const Time t{tick.arrived->tool_t_ns};
-    if (points_.empty() || t > points_.back().t) points_.push_back({t, tick.arrived->f_W});
+    if (points_.empty() || t > points_.back().t) points_.push_back({t, tick.arrived->p_W, tick.arrived->f_W});
   }
   const double seconds = points_.size() < 2 ? 0 : to_seconds(points_.back().t - points_.front().t);
   rate_hz_ = seconds > 0 ? static_cast<double>(points_.size() - 1) / seconds : 0;
@@ -36,13 +36,24 @@ std::optional<ForceJumps> Truth::snaps() const {
   return counter.snaps();
 }
 
-std::optional<Vec3> Truth::at(Time t) const noexcept {
+/// Notes the sample before `t`; returns how much of the way to the next has gone by then.
+std::optional<double> Truth::find(Time t) const noexcept {
   if (t < points_.front().t || t > points_.back().t) return {};
   if (points_[hint_].t > t) hint_ = 0;
   while (hint_ + 2 < points_.size() && points_[hint_ + 1].t <= t) ++hint_;
-  const Point &before = points_[hint_], &after = points_[hint_ + 1];
-  const double fraction = to_seconds(t - before.t) / to_seconds(after.t - before.t);
-  return before.f + fraction * (after.f - before.f);
+  return to_seconds(t - points_[hint_].t) / to_seconds(points_[hint_ + 1].t - points_[hint_].t);
+}
+
+std::optional<Vec3> Truth::at(Time t) const noexcept {
+  const auto fraction = find(t);
+  if (!fraction) return {};
+  return points_[hint_].f + *fraction * (points_[hint_ + 1].f - points_[hint_].f);
+}
+
+std::optional<double> Truth::distance(const Vec3& p, Time t) const noexcept {
+  const auto fraction = find(t);
+  if (!fraction) return {};
+  return (points_[hint_].p + *fraction * (points_[hint_ + 1].p - points_[hint_].p) - p).norm();
 }
 
 }  // namespace palpate::client

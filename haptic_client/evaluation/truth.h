@@ -11,7 +11,7 @@
 namespace palpate::client {
 
 /// The force that would have been right at any time: the samples of a capture that was made at a high rate on
-/// the same motion (`sim_server record --rate 2000 --plain`). 56 bytes a sample.
+/// the same motion (`sim_server record --rate 2000 --plain`). 80 bytes a sample.
 class Truth {
  public:
   /// Reads the longest session. Throws `Error` when the capture cannot be read or has less than 200 samples a
@@ -21,6 +21,8 @@ class Truth {
   /// Force (N, world) at `t` (client clock), on the line between the samples around it; none outside them.
   /// Times that grow are found at once.
   std::optional<Vec3> at(Time t) const noexcept;
+  /// Returns how far from `p` (m, world) the tool of the truth was at `t`; none outside its samples.
+  std::optional<double> distance(const Vec3& p, Time t) const noexcept;
   double rate_hz() const noexcept { return rate_hz_; }
   /// Snaps of the force over the whole capture; nothing where it has fewer than 2000 samples a second.
   std::optional<ForceJumps> snaps() const;
@@ -28,8 +30,9 @@ class Truth {
  private:
   struct Point {
     Time t;
-    Vec3 f;
+    Vec3 p, f;
   };
+  std::optional<double> find(Time t) const noexcept;
   std::vector<Point> points_;
   mutable std::size_t hint_ = 0;
   double rate_hz_ = 0;

@@ -2,6 +2,7 @@
 
 #include "common/error.h"
 #include "protocol/key_file.h"
+#include "protocol/udp_socket.h"
 
 namespace palpate::client {
 
@@ -35,6 +36,13 @@ void fail_unanswered(const NetLink& link, const ClientConfig& config, const std:
     fail_at_run_time(
         "nothing can be sent to {}: {}; is the address right, and this machine in the same network?",
         config.server, std::generic_category().message(reason));
+  }
+  if (const std::error_code answer =
+          protocol::UdpSocket::answer_of(server_of(config), std::chrono::milliseconds(200))) {
+    const bool refused = answer == std::errc::connection_refused;
+    fail_at_run_time("{}nothing listens at {} ({}): {}", name, config.server, answer.message(),
+                     refused ? "start `sim_server run` there, or give the port that it listens at"
+                             : "a router or firewall on the way rejects it; open UDP there");
   }
   fail_at_run_time(
       "no answer from a server at {} within {:g} s; is `sim_server run` up, {}and UDP open there?",

@@ -104,8 +104,10 @@ PALPATE_API size_t palpate_scene_tools(const palpate_scene* scene);
 
 /// Steps by `dt` s, 0 to 3600, rounded to an integer number of ns, without a clock: equal arguments return
 /// equal bytes. `tools` and `samples`: one for each tool of the scene, in its order; lift a tool with
-/// PALPATE_LOST. A value that is not finite, or beyond 1e9, is wrong input, and nothing happens. Uses both
-/// cores of large models. Allocates with the model `implicit`, and with any model of tissue that can be cut.
+/// PALPATE_LOST. Tissue in motion (`tensor_mass`, `hybrid`, `reduced`, `implicit`) goes in steps of one
+/// length: there, `dt` other than 0 and 1 / rate_hz of the scene (within 1e-5 of it) is wrong input. A value
+/// that is not finite, or beyond 1e9, is wrong input, and nothing happens. Uses both cores of large models.
+/// Allocates with the model `implicit`, and with any model of tissue that can be cut.
 PALPATE_API int palpate_scene_step(palpate_scene* scene, const palpate_tool_state* tools, size_t count,
                                    double dt, palpate_force_sample* samples, char* error, size_t error_size);
 

@@ -3,6 +3,7 @@
 #include "common/time.h"
 #include "protocol/c_interface/border.h"
 #include "protocol/c_interface/c_messages.h"
+#include "sim_server/models/deformation_models.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/served_tools.h"
 
@@ -11,6 +12,7 @@ using namespace palpate;
 namespace {
 
 constexpr double kLongestStep = 3600;                      // s
+constexpr double kSameStep = 1e-5;                         // of a step: its time is rounded somewhere
 constexpr Time kEnd = std::chrono::hours(24 * 365 * 100);  // 64 bits of ns hold nearly three of it
 
 /// Element `i` of an array of the caller's structs, which may be longer than ours.
@@ -33,22 +35,40 @@ void require_array(Struct* array, std::size_t count, const char* name) {
 
 /// A scene with its tools, each in the hand of the caller. Time is that of the steps.
 struct palpate_scene {
-  explicit palpate_scene(const char* file)
-      : simulation(sim::read_scene(file)), served(simulation), inputs(simulation.tools()) {
+  explicit palpate_scene(const char* file) : palpate_scene(sim::read_scene(file)) {}
+  explicit palpate_scene(const sim::Scene& scene)
+      : simulation(scene), served(simulation), inputs(simulation.tools()) {
     simulation.set_cut_options({.keeps_log = false});
+    const sim::DeformationModelRow& model = sim::model_of(scene.deformation);
+    if (model.moves && model.deforms()) step_s = 1 / scene.rate_hz;
   }
+
+  /// Throws `Error` unless a step may take so long.
+  void require_step(double dt) const;
 
   void step(const palpate_tool_state* tools, Time dt, palpate_force_sample* samples);
 
   sim::Simulation simulation;
   sim::ServedTools served;
   std::vector<sim::SessionInput> inputs;
+  std::optional<double> step_s;  // of tissue in motion, whose steps all take that long
   Time now{};
   std::uint64_t steps = 0;
 
  private:
   protocol::ToolState state_of(std::size_t i, const palpate_tool_state& published, Time then) const;
 };
+
+void palpate_scene::require_step(double dt) const {
+  if (!(dt >= 0 && dt <= kLongestStep)) fail("dt: expected 0 to {:g} s, not {:g}", kLongestStep, dt);
+  if (now > kEnd) fail("dt: the scene has run for a hundred years; open it again");
+  if (dt == 0 || !step_s || std::abs(dt - *step_s) <= kSameStep * *step_s) return;
+  fail(
+      "dt: the tissue of this scene is in motion, in steps of 1 / rate_hz = {:g} s; not {:g}; take that, or "
+      "0, or "
+      "set `rate_hz` = {:g} in the scene",
+      *step_s, dt, 1 / dt);
+}
 
 /// Returns the state of tool `i` at the end of the step.
 protocol::ToolState palpate_scene::state_of(std::size_t i, const palpate_tool_state& published,
@@ -102,8 +122,7 @@ int palpate_scene_step(palpate_scene* scene, const palpate_tool_state* tools, st
       fail("count: the scene has {} tools, not {}", scene->inputs.size(), count);
     require_array(tools, count, "tools");
     require_array(samples, count, "samples");
-    if (!(dt >= 0 && dt <= kLongestStep)) fail("dt: expected 0 to {:g} s, not {:g}", kLongestStep, dt);
-    if (scene->now > kEnd) fail("dt: the scene has run for a hundred years; open it again");
+    scene->require_step(dt);
     scene->step(tools, from_seconds(dt), samples);
   });
 }

@@ -227,4 +227,32 @@ TEST_CASE("evaluate: wrong input") {
   CHECK(refused({"--truth", study.file("none.pcap")}).find("none.pcap") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(study.folder.path() / "out" / "summary.json"));
 }
+TEST_CASE("evaluate: a truth of another motion is refused, with how far apart the tools are") {
+  const TemporaryFolder folder;
+  const auto file = [&](const std::string& name) { return (folder.path() / name).string(); };
+  // Both touch the wall; one of them 2 mm beside the other.
+  for (const char* x : {"0", "0.002"}) {
+    std::string rows = "t_s,x_m,y_m,z_m\n";
+    for (const char* end : {"0,", "1,", "2,"})
+      rows += std::string(end) + x + (end[0] == '1' ? ",0.004,0\n" : ",0.010,0\n");
+    folder.write(std::string("motion_") + x + ".csv", rows);
+  }
+  const std::string scene = source_dir() + "/configs/scenes/block.toml";
+  const auto record = [&](const std::string& motion, const std::string& rate, const std::string& out) {
+    output_of("sim_server",
+              {"record", scene, "--trajectory", file(motion), "--rate", rate, "--out", file(out), "--plain"},
+              0);
+  };
+  record("motion_0.csv", "33.3", "a.pcap");
+  record("motion_0.csv", "500", "truth.pcap");
+  record("motion_0.002.csv", "500", "other.pcap");
+  const auto evaluate = [&](const std::string& truth, int expected_code) {
+    return output_of(
+        "haptic_client",
+        {"evaluate", file("a.pcap"), "--truth", file(truth), "--method", "constant", "--out", file("out")},
+        expected_code);
+  };
+  CHECK_THAT(evaluate("truth.pcap", 0), !Catch::Matchers::Contains("mm away"));
+  CHECK_THAT(evaluate("other.pcap", 2), Catch::Matchers::Contains("up to 2 mm away"));
+}
 #endif

@@ -208,4 +208,12 @@ TEST_CASE("no output overwrites an input, another output, a link or an earlier r
   CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) ==
         4);  // nothing half-written left
 }
+TEST_CASE("replay of the first part of a recording names the next") {
+  const TemporaryFolder folder;
+  const std::string whole = (folder.path() / "F.pcap").string();
+  record(whole);
+  CHECK_THAT(replay(whole, {}), !Catch::Matchers::Contains("F-2.pcap"));
+  std::filesystem::copy_file(whole, folder.path() / "F-2.pcap");
+  CHECK_THAT(replay(whole, {}), Catch::Matchers::Contains("mergecap -a -F pcap -w ALL.pcap"));
+}
 #endif

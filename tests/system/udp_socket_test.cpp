@@ -106,3 +106,18 @@ TEST_CASE("a link-local address keeps its interface") {
   CHECK(endpoint.scope > 0);
   CHECK(to_string(endpoint) == "[fe80::1%lo]:45130");
 }
+
+TEST_CASE("a link-local address without an interface is refused with one that has it") {
+  CHECK_THROWS_WITH(resolve("[fe80::1]:45130", "--server"),
+                    Catch::Matchers::Contains("[fe80::1%eth0]:45130"));
+}
+
+TEST_CASE("the network says that nothing listens at a port, and nothing where something does") {
+  Endpoint gone;
+  {
+    const UdpSocket socket(resolve("127.0.0.1:0", "test"));
+    gone = socket.local();
+    CHECK(!UdpSocket::answer_of(gone, std::chrono::milliseconds(50)));
+  }
+  CHECK(UdpSocket::answer_of(gone, std::chrono::seconds(5)) == std::errc::connection_refused);
+}

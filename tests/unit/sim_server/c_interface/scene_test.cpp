@@ -118,3 +118,30 @@ radius = 0.006
     for (const double x : sample.more) CHECK(x == 7);
   }
 }
+
+TEST_CASE("c_interface: tissue in motion refuses a step of another length, and says which it takes") {
+  const Scene scene = open_scene(kConfigs + "scenes/liver_reduced.toml");
+  palpate_tool_state tool = at(0, 0.5, 0);
+  palpate_force_sample sample{};
+  sample.struct_size = sizeof sample;
+  char error[512];
+  const auto step = [&](double dt) {
+    return palpate_scene_step(scene.get(), &tool, 1, dt, &sample, error, sizeof error);
+  };
+  CHECK(step(1.0 / 30) == PALPATE_OK);
+  CHECK(step(0.0333333) == PALPATE_OK);  // as a time in ns or ms has it
+  CHECK(step(0) == PALPATE_OK);
+  for (const double dt : {0.03, 0.001, 0.05}) {
+    CHECK(step(dt) == PALPATE_WRONG_INPUT);
+    CHECK_THAT(error, Catch::Matchers::Contains("1 / rate_hz = 0.0333333 s"));
+  }
+}
+
+TEST_CASE("c_interface: tissue at rest takes steps of any length") {
+  const Scene scene = open_scene(kConfigs + "scenes/block.toml");
+  palpate_tool_state tool = at(0, 0.5, 0);
+  palpate_force_sample sample{};
+  sample.struct_size = sizeof sample;
+  for (const double dt : {0.03, 0.001, 0.5})
+    CHECK(palpate_scene_step(scene.get(), &tool, 1, dt, &sample, nullptr, 0) == PALPATE_OK);
+}
