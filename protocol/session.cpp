@@ -56,10 +56,11 @@ void ClientSession::welcomed_by(const Datagram& datagram, const Welcome& welcome
                                 LinkStats& stats) noexcept {
   // An older one, from a server that is gone; unless this one has been silent since.
   const bool another = datagram.header.session != current_.session;
-  if (another && welcome.attempt <= welcomed_attempt_) return;
+  const bool fresh = welcome.attempt > welcomed_attempt_;  // else it may have been captured
+  if (another && !fresh) return;
   if (datagram.header.session == departed_.session && heard_lately(now)) return;
   welcomed_attempt_ = std::max(welcomed_attempt_, welcome.attempt);
-  if (!another && !heard_lately(now)) {  // wild numbers may have moved the window ahead of the server
+  if (!another && fresh && !heard_lately(now)) {  // wild numbers may have moved the window ahead of the server
     current_.window.go_back_to(datagram.header.sequence);
     current_.samples = {};
   }
