@@ -60,7 +60,8 @@ void ClientSession::welcomed_by(const Datagram& datagram, const Welcome& welcome
   if (another && !fresh) return;
   if (datagram.header.session == departed_.session && heard_lately(now)) return;
   welcomed_attempt_ = std::max(welcomed_attempt_, welcome.attempt);
-  if (!another && fresh && !heard_lately(now)) {  // wild numbers may have moved the window ahead of the server
+  if (!another && fresh &&
+      !heard_lately(now)) {  // wild numbers may have moved the window ahead of the server
     current_.window.go_back_to(datagram.header.sequence);
     current_.samples = {};
   }

@@ -225,6 +225,10 @@ void Pipeline::follow_path(const ToolState& tool, double dt) noexcept {
 }
 
 bool Pipeline::take(const ForceSample& arrived, const Vec3& p_W, Time now) noexcept {
+  if (limiter_.is_implausible(arrived.f_W)) {  // judged before it is booked: no law, and no account, sees it
+    ++stats_.wild;
+    return false;
+  }
   const Vec3 before = estimate_.newest().p;
   const bool another = arrived.number <= estimate_.newest().number;
   if (!estimate_.take(sample_of(arrived, model_.get()), p_W, now)) {

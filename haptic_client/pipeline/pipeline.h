@@ -37,6 +37,7 @@ struct PipelineStats {
   std::uint64_t samples = 0;       ///< used
   std::uint64_t flagged = 0;       ///< of these, those whose force the server calls not settled
   std::uint64_t unsettled = 0;     ///< ticks that faded for that reason
+  std::uint64_t wild = 0;          ///< dropped: over 100 times the largest force
   std::uint64_t overtaken = 0;     ///< dropped: not newer than what was there
   std::uint64_t published = 0;     ///< ticks since the first sample
   std::uint64_t stepped_down = 0;  ///< ticks in which a simpler law stood in for the chosen one

@@ -8,17 +8,21 @@ namespace palpate::client {
 namespace {
 constexpr double kStormWindow = 1;      // s
 constexpr double kStormFraction = 0.5;  // of the window
-constexpr double kExcessive = 100;      // of the largest force
 constexpr double kExcessiveTime = 0.5;  // s
 }  // namespace
 
 Vec3 Limiter::clamp(const Vec3& f_D, double dt) noexcept {
-  const bool implausible = f_D.stableNorm() > kExcessive * settings_.max_force;
+  const bool implausible = is_implausible(f_D);
   excessive_time_ = implausible ? excessive_time_ + std::clamp(dt, 0.0, kLongestTick) : 0;
   if (excessive_time_ > kExcessiveTime) latch(Fault::kExcessive);
   const Vec3 f = within(1, f_D);
   counts_.clamped += f != f_D ? 1 : 0;
   return f;
+}
+
+bool Limiter::is_implausible(const Vec3& f) const noexcept {
+  constexpr double kExcessive = 100;  // of the largest force
+  return f.stableNorm() > kExcessive * settings_.max_force;
 }
 
 Vec3 Limiter::push(const Vec3& f_D, double dt) noexcept {

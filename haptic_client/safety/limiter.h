@@ -38,6 +38,8 @@ class Limiter {
   /// which it cuts are counted; half a second in a row of a force that no tissue makes latches. `dt`: as for
   /// `push`.
   Vec3 clamp(const Vec3& f_D, double dt) noexcept;
+  /// True if a force (N, any frame) is over 100 times the largest: no tissue makes it.
+  bool is_implausible(const Vec3& f) const noexcept;
   /// `f_D` (N) cut to a share of the largest force, direction kept.
   Vec3 within(double fraction, const Vec3& f_D) const noexcept;
   /// `f_D`, the force wished for (N, device frame): clamped, then slewed. `dt` (s): since the last tick; more
