@@ -7,8 +7,8 @@
 namespace palpate::sim {
 
 /// Vertices whose coordinates differ by no more than this share of the diagonal of the bounding box stand in
-/// one place.
-constexpr double kSamePlace = 1e-9;
+/// one place: two steps of a number with 24 bits, as files in single precision hold them.
+constexpr double kSamePlace = 2.4e-7;
 
 /// Outcome for vertices at the position of an earlier vertex.
 struct Coincidence {

@@ -10,6 +10,7 @@
 #include "sim_server/mesh/bounding_box.h"
 #include "sim_server/mesh/coincident_vertices.h"
 #include "sim_server/mesh/connectivity.h"
+#include "sim_server/mesh/cracks.h"
 #include "sim_server/mesh/loose_parts.h"
 #include "sim_server/mesh/surface.h"
 
@@ -233,6 +234,24 @@ void find_slivers(const TetMesh& mesh, std::vector<MeshFault>& all) {
        "(`ClassifySurfaces`)"});
 }
 
+void find_outer_faces_on_others(const TetMesh& mesh, std::span<const Triangle> faces, Finds& finds) {
+  const double same_place = kSamePlace * diagonal_of(mesh.vertices);
+  const Cracks cracks = find_cracks(mesh, faces, same_place);
+  if (cracks.faces > 0)
+    finds.add(
+        Cure::kRefused, "outer faces on others: a crack",
+        "mesh all of it at once (`BooleanFragments` in Gmsh), so that the faces match; or move the sides of "
+        "a slit "
+        "apart by more than a millionth of an edge",
+        [&] {
+          return fmt::format(
+              "{:.3g} mm2 of the surface lie on other surface, as at {}: parts that were meshed apart "
+              "touch there and do not hang together",
+              1e6 * cracks.area, text(cracks.place));
+        },
+        cracks.faces);
+}
+
 void find_surface_faults(const TetMesh& mesh, Finds& finds) {
   const OuterFaces faces = outer_faces(mesh);
   for (const OverlappingFace& face : faces.overlaps)
@@ -289,7 +308,9 @@ MeshFaults mend(TetMesh& mesh) {
     if (merged && coincidence.vertices > 0) upright = mesh;
   }
   find_bodies(mesh, finds);
+  const bool sound = !faults.refused();
   if (faults.surface_seen) find_surface_faults(upright, finds);
+  if (sound && !faults.refused()) find_outer_faces_on_others(mesh, outer_faces(mesh).triangles, finds);
   if (!faults.refused()) find_slivers(mesh, faults.found);
   return faults;
 }

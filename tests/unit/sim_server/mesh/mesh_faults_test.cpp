@@ -225,7 +225,7 @@ TEST_CASE("bodies farther apart than rounding are two, and refused with their si
         "F: 2 bodies that share no vertex, of 6, 1 tetrahedra, but the organ is one body; join them, or keep "
         "one (in Gmsh, save one physical volume)");
   TetMesh apart = cube();
-  append(apart, cube(), {1 + 1e-7, 0, 0});
+  append(apart, cube(), {1 + 1e-6, 0, 0});  // 4e-7 of the diagonal
   CHECK(has(error_of(apart), "2 bodies that share no vertex, of 6, 6 tetrahedra"));
   for (int i = 2; i < 22; ++i) append(mesh, corner_tetrahedron(), Vec3(5. * i, 0, 0));
   CHECK(has(error_of(mesh), "F: 22 bodies that share no vertex, of 6, 1, 1,"));
@@ -284,7 +284,46 @@ TEST_CASE("the sides of a slit are not merged", "[mesh]") {
       error_of(mesh) ==
       "F: vertices 1 and 18 are both at (1, 0, 0), in one body: a seam, or the sides of a slit, the first of "
       "2 vertices where there is one already; merge them if it is a seam (`Coherence Mesh;` in Gmsh); move "
-      "them more than 3e-09 m apart if it is a slit");
+      "them more than 7.2e-07 m apart if it is a slit");
+}
+
+TEST_CASE("bodies that were written in single precision are joined", "[mesh]") {
+  TetMesh mesh = cube();
+  append(mesh, cube(), {1 + 2e-7, 0, 1e-7});
+  CHECK(mend(mesh).found.front().cure == Cure::kMended);
+  CHECK(mesh.vertices.size() == 12);
+}
+
+/// A cube beside one of eight cells, joined where their vertices are in one place.
+TetMesh half_fine() {
+  TetMesh mesh = cube();
+  const TetMesh fine = grid_block({1, 1.5, 2}, {0, 0.5, 1}, {0, 0.5, 1});
+  std::vector<int> number;
+  for (const Vec3& x : fine.vertices) {
+    const auto same = std::ranges::find(mesh.vertices, x);
+    number.push_back(static_cast<int>(same - mesh.vertices.begin()));
+    if (same == mesh.vertices.end()) mesh.vertices.push_back(x);
+  }
+  for (const Tetrahedron& t : fine.tetrahedra)
+    mesh.tetrahedra.push_back({number[t[0]], number[t[1]], number[t[2]], number[t[3]]});
+  return mesh;
+}
+
+TEST_CASE("faces that lie on others without matching them are a crack, with its area", "[mesh]") {
+  const std::string error = error_of(half_fine());
+  CHECK(has(error, "1e+06 mm2 of the surface lie on other surface, as at (1, "));
+  CHECK(has(error, "BooleanFragments"));
+}
+
+TEST_CASE("sides of a slit that stand apart, and those of a thin sheet, are no crack", "[mesh]") {
+  TetMesh mesh = half_fine();
+  for (Vec3& x : mesh.vertices) {
+    // Beyond the seam, all but what both sides share goes 1e-4 of an edge away.
+    const bool shared = (x[1] == 0 || x[1] == 1) && (x[2] == 0 || x[2] == 1);
+    if (x[0] == 1 && !shared) x[0] += 1e-4;
+  }
+  CHECK_FALSE(has(error_of(mesh), "crack"));
+  CHECK(error_of(grid_block({0, 1, 2}, {0, 1e-5}, {0, 1, 2})).empty());
 }
 
 TEST_CASE("tetrahedra that overlap at a face are refused", "[mesh]") {
