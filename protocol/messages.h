@@ -288,6 +288,7 @@ struct ForceSample {
     kToolsUnsettled = 524288,
     kContactUnsettled = 1048576,
     kOutsideReach = 2097152,
+    kStrained = 4194304,  ///< the tissue under the tool, beyond what its law is meant for
   };
   std::uint8_t tool = 0;
   std::uint64_t number = 0;     ///< of this sample in its session, from 1

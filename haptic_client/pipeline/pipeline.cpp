@@ -244,6 +244,7 @@ bool Pipeline::take(const ForceSample& arrived, const Vec3& p_W, Time now) noexc
   ++stats_.samples;
   const bool flagged = (arrived.flags & ForceSample::kFlagged) != 0;
   stats_.flagged += flagged ? 1 : 0;
+  stats_.strained += (arrived.flags & ForceSample::kStrained) != 0 ? 1 : 0;
   unsettled_ = {flagged ? std::optional(unsettled_.since.value_or(now)) : std::nullopt, arrived.flags};
   if (estimate_.period() > Time::zero()) {
     stats_.sample_path_m += (arrived.p_W - before).norm();

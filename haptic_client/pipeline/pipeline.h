@@ -36,6 +36,7 @@ struct PipelineStats {
   Histogram age_ns;                ///< of the newest sample, each tick that has one
   std::uint64_t samples = 0;       ///< used
   std::uint64_t flagged = 0;       ///< of these, those whose force the server calls not settled
+  std::uint64_t strained = 0;      ///< those of tissue strained beyond what its law is meant for
   std::uint64_t unsettled = 0;     ///< ticks that faded for that reason
   std::uint64_t wild = 0;          ///< dropped: over 100 times the largest force
   std::uint64_t overtaken = 0;     ///< dropped: not newer than what was there

@@ -290,6 +290,12 @@ void print_tool(const Json& tool) {
         "          {:.0f} samples were dropped: over 100 times the largest force, which no tissue makes\n",
         number(force, "wild"));
   }
+  if (number(force, "strained") > 0) {
+    fmt::print(
+        "          {:.0f} samples ({:.3g} %) were of tissue strained beyond what its law is meant for: the "
+        "server's report says by how much\n",
+        number(force, "strained"), 100 * per(number(force, "strained"), number(force, "samples")));
+  }
   if (number(force, "flagged") > 0) {
     fmt::print(
         "          {:.0f} samples were flagged by the server as not settled; {:.0f} ticks faded for that "
@@ -355,10 +361,15 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
   const auto pairs = static_cast<double>(stats.sample_pairs);
   Json rendered = at_work_report(config.method, stats.substitutes, stats.published);
   rendered.update(error_budget_report(config.method, observation));
-  Json force = {{"samples", stats.samples},           {"overtaken", stats.overtaken},
-                {"flagged", stats.flagged},           {"wild", stats.wild},
-                {"stepped_down", stats.stepped_down}, {"stand_ins", substitutes_report(stats.substitutes)},
-                {"surface_pages", stats.pages},       {"age_ms", quantiles(stats.age_ns, 1e6)},
+  Json force = {{"samples", stats.samples},
+                {"overtaken", stats.overtaken},
+                {"flagged", stats.flagged},
+                {"wild", stats.wild},
+                {"strained", stats.strained},
+                {"stepped_down", stats.stepped_down},
+                {"stand_ins", substitutes_report(stats.substitutes)},
+                {"surface_pages", stats.pages},
+                {"age_ms", quantiles(stats.age_ns, 1e6)},
                 {"max_newton", stats.max_newton}};
   add_to(force, "unexplained_jump", observation.scoring().unexplained_jumps());
   return {{"device", config.device.name},

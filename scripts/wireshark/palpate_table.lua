@@ -212,6 +212,7 @@ return {
             {"tools_unsettled", 524288},
             {"contact_unsettled", 1048576},
             {"outside_reach", 2097152},
+            {"strained", 4194304},
           },
         },
         {

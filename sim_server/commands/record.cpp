@@ -152,6 +152,7 @@ Json make_report(const RecordOptions& options, const VirtualSession& session, do
                  {"late", stats.late},
                  {"flagged", stats.flagged},
                  {"flagged_by", simulation.flagged().to_json()},
+                 {"strain", simulation.strain() != nullptr ? simulation.strain()->to_json() : Json()},
                  {"max_newton", stats.max_newton},
                  {"resection", resection_report(simulation)},
                  {"state_hash", fmt::format("{:016x}", simulation.state_hash())}};
@@ -174,6 +175,8 @@ void print_recording(const RecordOptions& options, const VirtualSessionStats& st
       stats.flagged > 0 ? " (" + simulation.flagged().to_text() + ")" : "", stats.max_newton);
   if (const auto snaps = stats.snaps.snaps()) fmt::print("            {}\n", snaps_text(*snaps));
   if (const auto jumps = stats.jumps.jumps()) fmt::print("            {}\n", unexplained_text(*jumps));
+  if (simulation.strain() != nullptr && !simulation.strain()->to_text().empty())
+    fmt::print("            {}\n", simulation.strain()->to_text());
   if (options.real_time)
     fmt::print("            {} of the deadlines of {:g} Hz passed over, as steps took too long\n", stats.late,
                options.rate_hz);

@@ -122,6 +122,7 @@ void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simul
   report["late"] = stats.late;
   report["flagged"] = stats.flagged;
   report["flagged_by"] = simulation.flagged().to_json();
+  report["strain"] = simulation.strain() != nullptr ? simulation.strain()->to_json() : Json();
   report["max_newton"] = stats.max_newton();
   report["tools"] = tools_report(stats, link, scene, errors);
   int sessions = 0;
@@ -157,6 +158,10 @@ void print_errors(const Json& report) {
   }
 }
 
+std::string strain_text(const Simulation& simulation) {
+  return simulation.strain() != nullptr ? simulation.strain()->to_text() : "";
+}
+
 void print_summary(const Json& report, const Simulation& simulation) {
   const auto ms = [&](const char* key, const char* q) { return report[key][q].get<double>(); };
   fmt::print(
@@ -169,6 +174,8 @@ void print_summary(const Json& report, const Simulation& simulation) {
       report["max_newton"].get<double>());
   if (const std::string why = simulation.flagged().to_text(); !why.empty())
     fmt::print("            steps with a flagged force: {}\n", why);
+  if (const std::string strain = strain_text(simulation); !strain.empty())
+    fmt::print("            {}\n", strain);
   for (std::size_t i = 0; i < report["tools"].size(); ++i) {
     const Json& missed = report["tools"][i]["missed_by_m"];
     if (missed.is_null()) continue;

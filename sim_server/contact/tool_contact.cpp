@@ -367,6 +367,21 @@ SurfacePlane ToolContact::nearest(const Vec3& p_W, const Tissue& tissue) const n
   return {(on_axis - axis.on_triangle) / axis.distance, gap};
 }
 
+double ToolContact::surface_strain(std::span<const Vec3> positions,
+                                   std::span<const Vec3> rest) const noexcept {
+  const std::span<const int> vertices = finder_.vertices();
+  double least = 1, most = 1;  // squared stretch
+  for (const Triangle& t : patch_.triangles) {
+    for (int i = 0; i < 3; ++i) {
+      const int a = vertices[t[i]], b = vertices[t[(i + 1) % 3]];
+      const double stretch = (positions[a] - positions[b]).squaredNorm() / (rest[a] - rest[b]).squaredNorm();
+      least = std::min(least, stretch);
+      most = std::max(most, stretch);
+    }
+  }
+  return std::max(1 - std::sqrt(least), std::sqrt(most) - 1);
+}
+
 /// No answer: the tool is taken away, and enters afresh with the next step.
 void ToolContact::reject(ToolTissue tissue) {
   release(tissue);

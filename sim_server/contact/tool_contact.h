@@ -122,6 +122,8 @@ class ToolContact {
   /// Returns how deep it is in tissue that its `reach` leaves out, m: it feels nothing of that. 0: not at
   /// all.
   double depth_outside_reach(std::span<const Vec3> positions) const noexcept;
+  /// Returns the largest change of length of the surface's edges near it, by their length at rest: strain.
+  double surface_strain(std::span<const Vec3> positions, std::span<const Vec3> rest) const noexcept;
   /// Away from the tissue, on which it has no load any more: no force.
   void separate() noexcept;
   /// Adds the tangent to `force`. Of the last place where contact was solved: before another is asked for.

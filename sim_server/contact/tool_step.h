@@ -47,6 +47,7 @@ struct ToolInput {
 /// the force is not flagged.
 struct ToolAnswer : ToolForce {
   Doubt doubt = Doubt::kContact;   ///< of a flagged force: why
+  bool strained = false;           ///< the tissue under it, beyond what its law is meant for (`StrainRange`)
   Vec3 mean_force = Vec3::Zero();  ///< N, over the step; equal to `force` where contact is solved once
   /// Velocity of the organ's surface by its supports where the tool touches, or else nearest to it, m/s,
   /// world. Set with `at_tool` and `ahead`; zero where all supports rest.

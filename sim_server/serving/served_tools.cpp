@@ -225,6 +225,7 @@ ForceSample ServedTools::sample_of(std::size_t tool, const protocol::ToolState& 
   if (answer.contacts > 0) sample.flags |= ForceSample::kInContact;
   if (answer.flagged)
     sample.flags |= ForceSample::kFlagged | ForceSample::kFailed << static_cast<unsigned>(answer.doubt);
+  if (answer.strained) sample.flags |= ForceSample::kStrained;
   publish_nearby(answer, sample);
   if (surfaces_[tool].version != 0) publish_surface(answer, surfaces_[tool], sample);
   if (simulation_.instants() > 1 && answer.at_tool) {

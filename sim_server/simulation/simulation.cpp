@@ -134,6 +134,7 @@ Simulation::Simulation(const Scene& scene, TetMesh mesh, const Progress& progres
   const FreeMotion motion = tissue_.model->free_motion(0);
   tissue_.free = tissue_.positions = motion.positions;
   tissue_.velocities = motion.velocities;
+  if (row.deforms() && scene.material) state_.strain.emplace(scene.material->law);
   const std::vector<int> held = on_surface(fixed, organ_.surface);
   tools_ = ToolGroup(make_tools(scene, tissue_.free, organ_.surface, std::move(touchable), held, progress),
                      organ_.rest.size());
@@ -256,7 +257,16 @@ void Simulation::answer(std::size_t tool, const ToolInput& input, double dt) {
   if (!publishes_tangents) answer.force = state_.means[tool].late;
   answer.mean_force = state_.means[tool].all;
   if (cut_) cut_->resist(tool, contact, dt, answer);
-  const double depth = answer.flagged ? 0 : contact.depth_outside_reach(tissue_.positions);
+  judge_place(contact, answer);
+}
+
+/// Whether a force that was found means what it seems to: the tool may be where nothing is touchable, or the
+/// tissue under it strained beyond its law.
+void Simulation::judge_place(const ToolContact& tool, ToolAnswer& answer) noexcept {
+  if (answer.flagged) return;
+  if (state_.strain && answer.contacts > 0)
+    answer.strained = state_.strain->add(tool.surface_strain(tissue_.positions, organ_.rest));
+  const double depth = tool.depth_outside_reach(tissue_.positions);
   if (depth == 0) return;
   answer.flagged = true;
   answer.doubt = Doubt::kOutsideReach;

@@ -7,6 +7,7 @@
 #include "sim_server/scene/scene.h"
 #include "sim_server/simulation/flagged_steps.h"
 #include "sim_server/simulation/step_publisher.h"
+#include "sim_server/simulation/strain_range.h"
 #include "sim_server/tissue/model_inputs.h"
 
 namespace palpate::sim {
@@ -100,6 +101,8 @@ class Simulation {
   const Resection* resection() const { return cut_ ? &cut_->resection() : nullptr; }
   const StepFailures& failures() const { return state_.failures; }
   const FlaggedSteps& flagged() const { return state_.flagged; }
+  /// Strain under the tools; null: this organ does not deform.
+  const StrainRange* strain() const { return state_.strain ? &*state_.strain : nullptr; }
 
  private:
   friend class SimulationState;
@@ -122,6 +125,7 @@ class Simulation {
     std::uint32_t published_version = 0;
     StepFailures failures = {};
     FlaggedSteps flagged = {};
+    std::optional<StrainRange> strain = {};
     std::vector<InstantPath> paths = {};  // of each tool
     std::vector<Mean> means = {};
     std::vector<ToolAnswer> answers = {};
@@ -133,6 +137,7 @@ class Simulation {
   void answer(std::size_t tool, const ToolInput& input, double dt);
   void hold_answers(std::span<const ToolInput> inputs) noexcept;
   void explain_flagged() noexcept;
+  void judge_place(const ToolContact& tool, ToolAnswer& answer) noexcept;
   void release_tool(std::size_t tool) noexcept;
   bool ran_away() const noexcept;
   CutOrgan cut_organ() { return {*organ_.mesh, organ_.surface, organ_.rest, tissue_, tools_.all()}; }
