@@ -36,7 +36,7 @@ Trajectory::Trajectory(const TrajectorySettings& settings) : repeats_(settings.r
     p_.push_back(settings.offset +
                  settings.scale * settings.axes * Vec3(columns[1][i], columns[2][i], columns[3][i]));
   }
-  if (has_csv_column(settings.file, TrajectorySettings::kButtons)) {
+  if (CsvTable(settings.file).has(TrajectorySettings::kButtons)) {
     const std::vector<std::string> column{TrajectorySettings::kButtons};
     const auto values = read_csv_columns(settings.file, column);
     for (const double bits : values.front()) {
