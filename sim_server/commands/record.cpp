@@ -23,15 +23,6 @@ constexpr double kUsualTicks = 500;           // Hz
 constexpr std::uint64_t kSearchAround = 256;  // ticks between two looks at the progress line
 constexpr double kLongest = 1e5;              // s
 
-/// A CSV (t_s, x_m, y_m, z_m, world), or a client file whose [trajectory] says how to read one.
-Trajectory read_motion(const std::filesystem::path& file) {
-  if (file.extension() != ".toml") return Trajectory(TrajectorySettings{.file = file});
-  const Config client = Config::read(file);
-  const auto section = client.table("trajectory");
-  if (!section) fail("{}: has no [trajectory] section to take the motion from", file.string());
-  return Trajectory(read_trajectory_settings(*section));
-}
-
 /// Reads the motions in the order of the tools; a tool that is captured needs one.
 std::vector<Trajectory> read_motions(const RecordOptions& options, const Scene& scene) {
   if (options.trajectories.size() > scene.tools.size())
@@ -41,7 +32,10 @@ std::vector<Trajectory> read_motions(const RecordOptions& options, const Scene& 
     fail("--tool {}: has no motion; give --trajectory once for each tool of the scene, in their order",
          options.tool);
   std::vector<Trajectory> motions;
-  for (const auto& file : options.trajectories) motions.push_back(read_motion(file));
+  for (const auto& file : options.trajectories) {
+    motions.emplace_back(motion_settings(file));
+    motions.back().log_source();
+  }
   return motions;
 }
 

@@ -47,7 +47,8 @@ TEST_CASE("trajectories: interpolation, ends, repetition, scale and offset") {
   CHECK(open.at(50)[0] == Approx(0.1));
   const test::TemporaryFolder folder;
   const auto file = folder.write("m.csv", "time,a,b,c\n10,1,2,3\n11,2,2,3\n");
-  const Trajectory read({file, {"time", "c", "a", "b"}, 0.001, Vec3(0, 0, 1)});
+  const Trajectory read(
+      {.file = file, .columns = {"time", "c", "a", "b"}, .scale = 0.001, .offset = Vec3(0, 0, 1)});
   CHECK((read.at(0.5) - Vec3(0.003, 0.0015, 1.002)).norm() < 1e-15);
   const auto bad = folder.write("bad.csv", "t_s,x_m,y_m,z_m\n0,0,0,0\n0,1,1,1\n");
   CHECK_THROWS_AS(Trajectory({.file = bad}), Error);
