@@ -1,5 +1,7 @@
 #include "haptic_client/device/simulated_operator.h"
 
+#include <cmath>
+
 #include "common/error.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
@@ -63,4 +65,17 @@ TEST_CASE("trajectories: one that ends near its start stays at its end unless it
   const auto far = folder.write("far.csv", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0,-0.5,0\n");
   CHECK_THROWS_WITH(Trajectory({.file = far, .repeat = true}),
                     Catch::Contains("ends 500 mm from where it began"));
+}
+
+TEST_CASE("the hand turns the tool as its motion does, and tells no orientation where that has none") {
+  const test::TemporaryFolder folder;
+  const auto turns =
+      folder.write("q.csv", "t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n0.2,0,0,0,0,1,0,0\n");
+  SimulatedOperator turning({}, Trajectory({.file = turns})), still({}, Trajectory({0}, {Vec3::Zero()}));
+  turning.read(0s);
+  std::optional<Quat> half;  // of the half turn about x
+  for (int tick = 1; tick <= 50; ++tick) half = turning.read(tick * 2ms).q_D;
+  REQUIRE(half);
+  CHECK(half->angularDistance(Quat(std::sqrt(0.5), std::sqrt(0.5), 0, 0)) < 1e-7);
+  CHECK_FALSE(still.read(0s).q_D);
 }
