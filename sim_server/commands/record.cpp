@@ -147,8 +147,10 @@ Json make_report(const RecordOptions& options, const VirtualSession& session, do
                  {"flagged", stats.flagged},
                  {"flagged_by", simulation.flagged().to_json()},
                  {"max_newton", stats.max_newton},
+                 {"missed_by_m", nullptr},
                  {"resection", resection_report(simulation)},
                  {"state_hash", fmt::format("{:016x}", simulation.state_hash())}};
+  if (const auto missed = stats.missed.missed_by(options.tool - 1)) report["missed_by_m"] = *missed;
   add_to(report, "snap", stats.snaps.snaps());
   add_to(report, "unexplained_jump", stats.jumps.jumps());
   return report;
@@ -166,6 +168,11 @@ void print_recording(const RecordOptions& options, const VirtualSessionStats& st
       stats.in_contact, 1e-6 * stats.contact_step_ns.quantile(0.5),
       1e-6 * stats.contact_step_ns.quantile(0.99), stats.flagged,
       stats.flagged > 0 ? " (" + simulation.flagged().to_text() + ")" : "", stats.max_newton);
+  for (std::size_t i = 0; i < options.trajectories.size(); ++i) {
+    if (const auto missed = stats.missed.missed_by(i))
+      fmt::print("            {}; are its places metres in the scene's frame ([trajectory] scale, offset)?\n",
+                 never_touched_text(i, *missed));
+  }
   if (const auto snaps = stats.snaps.snaps()) fmt::print("            {}\n", snaps_text(*snaps));
   if (const auto jumps = stats.jumps.jumps()) fmt::print("            {}\n", unexplained_text(*jumps));
   if (options.real_time)

@@ -76,10 +76,8 @@ Json timeline_report(const Timeline<StepCell>& timeline) {
   return {{"cell_s", to_seconds(timeline.width())}, {"cells", cells}};
 }
 
-/// Returns by how much a tool that was held, but never touched, missed the tissue, m.
-Json missed_by(const ToolStats& tool) {
-  if (tool.contact_steps > 0 || !tool.nearest_m) return nullptr;
-  return *tool.nearest_m;
+Json json_of(std::optional<double> value) {
+  return value ? Json(*value) : Json(nullptr);
 }
 
 Json percent_of(const DiscretisationError& error) {
@@ -101,11 +99,13 @@ Json tools_report(const SimLoopStats& stats, const NetLink& link, const Scene& s
                   const ErrorOfForce& errors) {
   Json tools = Json::array();
   for (std::size_t i = 0; i < scene.tools.size(); ++i) {
-    Json tool = {
-        {"radius_m", scene.tools[i].shape.radius},       {"max_newton", stats.tools[i].max_newton},
-        {"contact_steps", stats.tools[i].contact_steps}, {"beyond_steps", stats.tools[i].beyond_steps},
-        {"missed_by_m", missed_by(stats.tools[i])},      {"rendered", rendered_report(errors, i)},
-        {"sessions", link.tools[i].so_far.load()}};
+    Json tool = {{"radius_m", scene.tools[i].shape.radius},
+                 {"max_newton", stats.tools[i].max_newton},
+                 {"contact_steps", stats.tools[i].contact_steps},
+                 {"beyond_steps", stats.tools[i].beyond_steps},
+                 {"missed_by_m", json_of(stats.missed.missed_by(i))},
+                 {"rendered", rendered_report(errors, i)},
+                 {"sessions", link.tools[i].so_far.load()}};
     add_to(tool, "unexplained_jump", stats.tools[i].jumps.jumps());
     tools.push_back(std::move(tool));
   }
@@ -174,11 +174,8 @@ void print_summary(const Json& report, const Simulation& simulation) {
   for (std::size_t i = 0; i < report["tools"].size(); ++i) {
     const Json& missed = report["tools"][i]["missed_by_m"];
     if (missed.is_null()) continue;
-    fmt::print(
-        "            tool {} never touched the organ: it came within {:.1f} mm of it; is the client file "
-        "made "
-        "for this scene ([session] clients)?\n",
-        i + 1, 1e3 * missed.get<double>());
+    fmt::print("            {}; is the client file made for this scene ([session] clients)?\n",
+               never_touched_text(i, missed.get<double>()));
   }
   print_errors(report);
   for (std::size_t i = 0; i < report["tools"].size(); ++i) {

@@ -48,7 +48,8 @@ const Endpoint kClient = documentation_address(1, 45131), kServer = documentatio
 VirtualSession::VirtualSession(Simulation& simulation, std::span<const Trajectory> motions,
                                double tool_radius, const VirtualLink& link, CaptureWriter& capture,
                                const ErrorOfForce* errors)
-    : served_(simulation, errors),
+    : simulation_(simulation),
+      served_(simulation, errors),
       inputs_(simulation.tools()),
       motions_(motions.first(std::min(motions.size(), simulation.tools()))),
       link_(link),
@@ -60,6 +61,7 @@ VirtualSession::VirtualSession(Simulation& simulation, std::span<const Trajector
                     .sent = {},
                     .has = {}} {
   stats_.snaps = SnapCounter(link.rate_hz);
+  stats_.missed = MissedTools(simulation.tools());
 }
 
 Time VirtualSession::time_of(std::uint64_t k) const {
@@ -138,6 +140,7 @@ void VirtualSession::step(const ToolState& state, double steps_due) {
     stats_.contact_step_ns.add(took.count());
   }
   stats_.flagged += std::ranges::any_of(outcomes, is_flagged) ? 1 : 0;
+  stats_.missed.measure(outcomes, simulation_, answered_);
   for (const ServedTools::Outcome& outcome : outcomes)
     stats_.max_newton = std::max(stats_.max_newton, outcome.force.force.norm());
   const ServedTools::Outcome& outcome = outcomes[link_.tool];
