@@ -304,6 +304,9 @@ TrajectorySettings read_trajectory_settings(const Config& section) {
   if (section.has("rate_hz")) motion.rate_hz = section.number("rate_hz", {0.1, 1e5, "Hz"});
   if (section.has("columns")) motion.columns = section.texts("columns", motion.rate_hz ? 3 : 4, {});
   if (section.has("time_scale")) motion.time_scale = section.number("time_scale", {1e-9, 1e3, "s per unit"});
+  if (motion.rate_hz && motion.time_scale)
+    fail("{}: `time_scale` is of a column of times, and `rate_hz` is for files without one; leave one out",
+         section.where("time_scale"));
   if (section.has("gap")) motion.gap = section.number("gap", {1e-6, 1e5, "s"});
   if (section.has("scale")) motion.scale = section.number("scale", {1e-9, 1e9, "m per unit"});
   motion.axes = read_rotated_axes(section);

@@ -119,7 +119,8 @@ TEST_CASE("keys of a recorded motion: read with their ranges, `columns` without 
   CHECK(read("rate_hz = 60\ncolumns = [\"a\", \"b\", \"c\"]\n").rate_hz == 60);
   for (const char* const wrong :
        {"time_scale = 0", "gap = 0", "rate_hz = 0", "columns = [\"a\", \"b\", \"c\"]",
-        "rate_hz = 60\ncolumns = [\"t\", \"a\", \"b\", \"c\"]", "axes = [\"x\", \"y\", \"-z\"]"}) {
+        "rate_hz = 60\ntime_scale = 1", "rate_hz = 60\ncolumns = [\"t\", \"a\", \"b\", \"c\"]",
+        "axes = [\"x\", \"y\", \"-z\"]"}) {
     CAPTURE(wrong);
     CHECK_THROWS_WITH(read(wrong), Catch::Contains("c.toml:"));
   }
