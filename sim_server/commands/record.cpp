@@ -8,6 +8,7 @@
 #include "common/config.h"
 #include "common/error.h"
 #include "common/log.h"
+#include "common/overwrite.h"
 #include "common/progress.h"
 #include "common/report.h"
 #include "sim_server/commands/explain.h"
@@ -64,6 +65,8 @@ void require_distinct_files(const RecordOptions& options, const Scene& scene) {
 void check_record_files(const RecordOptions& options, const Scene& scene) {
   require_distinct_files(options, scene);
   if (options.report) check_writable(*options.report, Contents::kReport);
+  require_new({{"--out", options.out}, {"--resection", options.resection}, {"--removals", options.removals}},
+              options.force);
   require_resection("--resection", options.resection, scene);
   require_resection("--removals", options.removals, scene);
   if (!scene.cutting) require_resection("--remove", options.remove, scene);
@@ -258,6 +261,7 @@ Command record_command() {
                  &options->rate_hz,
                  {.required = true}},
                 {"--out", "Capture to write (pcap)", &options->out, {.required = true}},
+                force_option(options->force),
                 {"--delay-ms",
                  "From reading the tool to having its force in the client, ms, 0 to 10000",
                  &options->delay_ms,

@@ -32,7 +32,7 @@ struct Recording {
   std::string record(const std::string& motion, int expected_code) {
     return output_of("sim_server",
                      {"record", scene, "--trajectory", motion, "--rate", "100", "--out",
-                      (folder.path() / "r.pcap").string(), "--report", report},
+                      (folder.path() / "r.pcap").string(), "--force", "--report", report},
                      expected_code);
   }
 };
@@ -90,5 +90,35 @@ TEST_CASE("record, study and run: a hole is one line and exit code 2, until the 
              Contains(hole));
   CHECK_THAT(output_of("haptic_client", {"run", client, "--server", "127.0.0.1:9", "--seconds", "1"}, 2),
              Contains(hole));
+}
+
+TEST_CASE("record, run and replay: a capture or a table of before is kept, unless --force is given") {
+  Recording bench("radius = 0.03\n");
+  const auto path = [&](const char* name) { return (bench.folder.path() / name).string(); };
+  const std::string motion = bench.file("in.csv", "t_s,x_m,y_m,z_m\n0,0.05,0.42,0.05\n1,0.05,0.42,0.05\n");
+  const auto kept = [&](const std::string& program, std::vector<std::string> arguments,
+                        const std::string& option, const std::string& file) {
+    arguments.insert(arguments.end(), {option, file});
+    const std::string before = bytes_of(file);
+    CHECK_THAT(output_of(program, arguments, 2),
+               Contains(option + ": " + file + " is there already; `--force` overwrites it"));
+    CHECK(bytes_of(file) == before);
+  };
+  const std::vector<std::string> record{"record", bench.scene, "--trajectory", motion, "--rate", "100"},
+      replay{"replay", path("a.pcap")};
+  kept("sim_server", record, "--out", bench.file("old.pcap", "of before"));
+  bench.file("empty.pcap", "");  // nothing to lose
+  for (const char* const name : {"empty.pcap", "a.pcap"}) {
+    std::vector<std::string> arguments = record;
+    arguments.insert(arguments.end(), {"--out", path(name)});
+    output_of("sim_server", arguments, 0);
+  }
+  const std::string table = bench.file("old.csv", "of before");
+  kept("haptic_client", replay, "--out", table);
+  output_of("haptic_client", {"replay", path("a.pcap"), "--out", table, "--force"}, 0);
+  CHECK(bytes_of(table).size() > 1000);
+  kept("haptic_client", {"run", kClient}, "--trace", table);
+  kept("haptic_client", {"run", kClient}, "--record", path("a.pcap"));
+  kept("sim_server", {"run", bench.scene, "--listen", "127.0.0.1:0"}, "--record", path("a.pcap"));
 }
 #endif
