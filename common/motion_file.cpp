@@ -84,7 +84,7 @@ class MotionReader {
 };
 
 MotionReader::MotionReader(const TrajectorySettings& settings)
-    : settings_(settings), table_(settings.file), turns_(false), presses_(table_.has(kButtons)) {
+    : settings_(settings), table_(settings.file), presses_(table_.has(kButtons)) {
   choose_columns();
   turns_ = std::ranges::any_of(kOrientation, [&](const std::string& name) { return table_.has(name); });
 }

@@ -66,31 +66,33 @@ TEST_CASE("a motion in ms, us or ns, and in mm, is that in seconds and metres, b
   equals(read_text(Recorded{.time = 1e-6, .length = 1e-3, .head = "t_us,x_mm,y_mm,z_mm\n"}.text()));
   equals(read_text(Recorded{.time = 1e-9, .head = "t_ns,x_m,y_m,z_m\n"}.text()));
   equals(read_text(Recorded{.time = 1e-3, .length = 1e-3, .head = "when,x,y,z\n"}.text(),
-                   {.columns = {"when", "x", "y", "z"}, .scale = 1e-3, .time_scale = 1e-3}));
-  equals(read_text(Recorded{.head = "t_ms,x_mm,y_mm,z_mm\n"}.text(), {.scale = 1, .time_scale = 1}));
+                   {.file = {}, .columns = {"when", "x", "y", "z"}, .scale = 1e-3, .time_scale = 1e-3}));
+  equals(
+      read_text(Recorded{.head = "t_ms,x_mm,y_mm,z_mm\n"}.text(), {.file = {}, .scale = 1, .time_scale = 1}));
 }
 
 TEST_CASE("a motion without times comes at the rate that is told, and its times are not told twice") {
   const std::string text = "x_m,y_m,z_m\n0,0,0\n0.001,0,0\n0.003,0,0\n";
-  const MotionRows read = read_text(text, {.rate_hz = 50});
+  const MotionRows read = read_text(text, {.file = {}, .rate_hz = 50});
   CHECK(read.t == std::vector<double>{0, 0.02, 0.04});
   CHECK(read.p[2] == Vec3(0.003, 0, 0));
   CHECK_THROWS_WITH(read_text(text),
                     Contains(":1: no column t_s, t_ms, t_us or t_ns") && Contains("`rate_hz`"));
-  CHECK_THROWS_WITH(read_text(Recorded{}.text(), {.rate_hz = 50}), Contains("leave `rate_hz` out"));
+  CHECK_THROWS_WITH(read_text(Recorded{}.text(), {.file = {}, .rate_hz = 50}),
+                    Contains("leave `rate_hz` out"));
 }
 
 TEST_CASE("columns of different units of length need their scale") {
   const std::string text = "t_s,x_m,y_mm,z_m\n0,0,0,0\n1,1,1,1\n";
   CHECK_THROWS_WITH(read_text(text), Contains(":1: columns x_m and y_mm have different units"));
-  CHECK(read_text(text, {.scale = 0.5}).p[1] == Vec3(0.5, 0.5, 0.5));
+  CHECK(read_text(text, {.file = {}, .scale = 0.5}).p[1] == Vec3(0.5, 0.5, 0.5));
 }
 
 TEST_CASE("a hole in a recording is refused with its place and length, or accepted by `gap`") {
   const std::string text = Recorded{.hole_from = 300, .hole_to = 700}.text();
   CHECK_THROWS_WITH(read_text(text), Contains("motion.csv:302: a hole of 0.401 s at 0.299 s") &&
                                          Contains("every 0.001 s") && Contains("accept it by `gap = 0.44`"));
-  CHECK(read_text(text, {.gap = 0.44}).t.size() == 601);
+  CHECK(read_text(text, {.file = {}, .gap = 0.44}).t.size() == 601);
   CHECK_NOTHROW(read_text(Recorded{.hole_from = 300, .hole_to = 309}.text()));  // 10 ms: ten intervals
   CHECK_THROWS(read_text(Recorded{.hole_from = 300, .hole_to = 310}.text()));
   CHECK_NOTHROW(read_text("t_s,x_m,y_m,z_m\n0,0,0,0\n0.1,0,0,0\n9,0.1,0,0\n"));  // corners of a path
@@ -109,7 +111,7 @@ TEST_CASE("a row away from both its neighbours is refused by its number, a fast 
 TEST_CASE("millimetres read as metres are faster than a hand, and the remedies work") {
   const std::string text = Recorded{.length = 1e-3}.text();  // 10 mm as 10 m: 10 pi m/s
   CHECK_THROWS_WITH(read_text(text), Contains("less than 10") && Contains("`scale = 1e-3`"));
-  CHECK((read_text(text, {.scale = 1e-3}).p[500] - Vec3(0.001, 0.002, 0.002)).norm() < 1e-15);
+  CHECK((read_text(text, {.file = {}, .scale = 1e-3}).p[500] - Vec3(0.001, 0.002, 0.002)).norm() < 1e-15);
 }
 
 TEST_CASE("milliseconds read as seconds are refused, rows once a second accepted where that is said") {
@@ -117,8 +119,8 @@ TEST_CASE("milliseconds read as seconds are refused, rows once a second accepted
   CHECK_THROWS_WITH(read_text(text),
                     Contains("motion.csv:1: 1001 rows of column t_s last 1000 s, one every 1 s") &&
                         Contains("`time_scale = 1e-3`"));
-  CHECK(read_text(text, {.time_scale = 1e-3}).t.back() == Approx(1).epsilon(1e-15));
-  CHECK(read_text(text, {.time_scale = 1}).t.back() == 1000);
+  CHECK(read_text(text, {.file = {}, .time_scale = 1e-3}).t.back() == Approx(1).epsilon(1e-15));
+  CHECK(read_text(text, {.file = {}, .time_scale = 1}).t.back() == 1000);
 }
 
 TEST_CASE("times that do not increase are refused with file and line") {
@@ -174,8 +176,8 @@ TEST_CASE("a quaternion far from unit length, or without all four columns, is re
 TEST_CASE("axes turn places and orientation: z up of a file becomes y up of the world") {
   Mat3 axes;
   axes << 1, 0, 0, 0, 0, 1, 0, -1, 0;  // world x, y, z are the file's x, z, -y
-  const MotionRows read =
-      read_text("t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,1,2,3,1,0,0,0\n", {.offset = Vec3(0, 0, 1), .axes = axes});
+  const MotionRows read = read_text("t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,1,2,3,1,0,0,0\n",
+                                    {.file = {}, .offset = Vec3(0, 0, 1), .axes = axes});
   CHECK(read.p[0] == Vec3(1, 3, -1));
   CHECK((read.q[0] * Vec3::UnitZ() - Vec3::UnitY()).norm() < 1e-15);  // the tool's axis, along z in the file
 }
