@@ -80,14 +80,19 @@ TEST_CASE("record, study and run: a hole is one line and exit code 2, until the 
   const std::string motion = bench.file("hole.csv", with_hole()),
                     client = bench.file("client.toml", "[trajectory]\nfile = \"hole.csv\"\n"),
                     accepts = bench.file("accepts.toml", "[trajectory]\nfile = \"hole.csv\"\ngap = 0.45\n");
+  const std::string soft = bench.file(
+      "soft.toml",
+      "rate_hz = 30\n[mesh]\nfile = \"column.msh\"\n[material]\nyoung_modulus = 2e4\npoisson_ratio = 0.3\n"
+      "[[fixed]]\nbox = [[-1, -1, -1], [1, 0.001, 1]]\n[[tool]]\nradius = 0.03\n[deformation]\nmodel = "
+      "\"quasi_static\"\n");
   const std::string hole = "hole.csv:32: a hole of 0.41 s at 0.29 s: no rows, which come every 0.01 s";
   for (const std::string& given : {motion, client}) CHECK_THAT(bench.record(given, 2), Contains(hole));
   CHECK_THAT(bench.record(accepts, 0), Contains("hole.csv: 61 rows, 1 s"));
-  CHECK_THAT(output_of("sim_server",
-                       {"study", bench.scene, "--trajectory", client, "--out",
-                        (bench.folder.path() / "study").string()},
-                       2),
-             Contains(hole));
+  CHECK_THAT(
+      output_of("sim_server",
+                {"study", soft, "--trajectory", client, "--out", (bench.folder.path() / "study").string()},
+                2),
+      Contains(hole));
   CHECK_THAT(output_of("haptic_client", {"run", client, "--server", "127.0.0.1:9", "--seconds", "1"}, 2),
              Contains(hole));
 }
