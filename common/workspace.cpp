@@ -9,8 +9,16 @@
 namespace palpate {
 namespace {
 
-/// Returns which device axis each axis of the world is, such as ["x", "-z", "y"].
-Mat3 read_axes(const Config& config) {
+// Of the Falcon somewhat more than the cube of 100 mm that its maker states; of the SpaceMouse what the
+// client's [spacemouse] `reach` is where it is not told.
+const std::array kReaches{
+    DeviceReach{"falcon", Vec3(-0.065, -0.065, 0.07), Vec3(0.065, 0.065, 0.18)},
+    DeviceReach{"spacemouse", Vec3(-0.1, -0.1, -0.1), Vec3(0.1, 0.1, 0.1)},
+};
+
+}  // namespace
+
+Mat3 read_rotated_axes(const Config& config) {
   Mat3 axes = Mat3::Zero();
   const auto names = config.texts("axes", 3, {"x", "y", "z"});
   for (int i = 0; i < 3; ++i) {
@@ -27,20 +35,11 @@ Mat3 read_axes(const Config& config) {
   return axes;
 }
 
-// Of the Falcon somewhat more than the cube of 100 mm that its maker states; of the SpaceMouse what the
-// client's [spacemouse] `reach` is where it is not told.
-const std::array kReaches{
-    DeviceReach{"falcon", Vec3(-0.065, -0.065, 0.07), Vec3(0.065, 0.065, 0.18)},
-    DeviceReach{"spacemouse", Vec3(-0.1, -0.1, -0.1), Vec3(0.1, 0.1, 0.1)},
-};
-
-}  // namespace
-
 Workspace read_workspace(const Config& config) {
   Workspace workspace;
   workspace.scale = config.number("scale", {0.01, 100, "world m per device m"}, workspace.scale);
   workspace.offset_W = config.vector("offset", {-kMaxCoordinate, kMaxCoordinate, "m"}, workspace.offset_W);
-  workspace.axes = read_axes(config);
+  workspace.axes = read_rotated_axes(config);
   return workspace;
 }
 

@@ -25,6 +25,10 @@ struct Workspace {
   Vec3 motion_to_device(const Vec3& d_W) const noexcept { return axes.transpose() * d_W / scale; }
 };
 
+/// Returns `axes` of a section: which axis of a device or a file each axis of the world is, such as
+/// ["x", "-z", "y"]. Throws `Error` unless that is a rotation.
+Mat3 read_rotated_axes(const Config& config);
+
 /// `scale`, `offset` and `axes` of a [workspace] section. Throws `Error`.
 Workspace read_workspace(const Config& config);
 

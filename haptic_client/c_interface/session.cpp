@@ -119,20 +119,21 @@ void palpate_session::connect() {
   }
 }
 
-/// Senses as the pipeline senses a device, but that a caller may know velocity and orientation.
+/// Senses as the pipeline senses a device, but that a caller may know the velocity.
 protocol::ToolState palpate_session::sense(const palpate_tool_state& published) noexcept {
   const Workspace& workspace = config_.workspace;
   const auto state = c_interface::read_tool_state(published);
   const bool valid = state && (state->flags & protocol::ToolState::kDeviceLost) == 0;
   DeviceReading reading{.t = now(), .buttons = static_cast<std::uint16_t>(published.buttons), .valid = valid};
-  if (valid) reading.p_D = state->p_W;  // the caller's frame is that of the device
+  if (valid) {  // the caller's frame is that of the device
+    reading.p_D = state->p_W;
+    reading.q_D = Quat(state->q_W[0], state->q_W[1], state->q_W[2], state->q_W[3]);
+  }
   protocol::ToolState tool = pipeline_.sense(reading);
   if (!valid) return tool;
   const bool clutched = (tool.flags & protocol::ToolState::kClutched) != 0;  // then the tool stays
   if ((published.flags & PALPATE_HAS_VELOCITY) != 0 && !clutched)
     tool.v_W = workspace.scale * workspace.axes * state->v_W;
-  const Quat turned = Quat(workspace.axes) * Quat(state->q_W[0], state->q_W[1], state->q_W[2], state->q_W[3]);
-  tool.q_W = {turned.w(), turned.x(), turned.y(), turned.z()};
   return tool;
 }
 

@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "common/time.h"
 #include "common/types.h"
 
@@ -8,6 +10,7 @@ namespace palpate::client {
 struct DeviceReading {
   Time t{};                   ///< when it was read, this machine's monotonic clock
   Vec3 p_D = Vec3::Zero();    ///< position of the handle, m, device frame
+  std::optional<Quat> q_D{};  ///< orientation of the handle, unit, device frame; none: it does not tell
   std::uint16_t buttons = 0;  ///< one bit each
   bool valid = true;          ///< false: nothing known (unplugged, not homed): no force may follow
 };

@@ -16,6 +16,7 @@ const Vec3 kRest(0, 0.1, 0);  // m: above the organ of the scenes that ship
 
 std::unique_ptr<Device> make_simulated(const DeviceSettings& settings) {
   Trajectory path = settings.trajectory ? Trajectory(*settings.trajectory) : Trajectory({0}, {kRest});
+  if (settings.trajectory) path.log_source();
   return std::make_unique<SimulatedOperator>(settings.hand, std::move(path));
 }
 

@@ -13,7 +13,9 @@ DeviceReading SimulatedOperator::read(Time now) noexcept {
   last_ = now;
   const int steps = static_cast<int>(std::ceil(dt / SimulatedHand::kSubStep));
   for (int i = 0; i < steps; ++i) advance(dt / steps);
-  return {.t = now, .p_D = hand_.place(), .buttons = trajectory_.buttons_at(hand_time_)};
+  DeviceReading reading{.t = now, .p_D = hand_.place(), .buttons = trajectory_.buttons_at(hand_time_)};
+  if (trajectory_.turns()) reading.q_D = trajectory_.orientation_at(hand_time_);
+  return reading;
 }
 
 void SimulatedOperator::advance(double dt) noexcept {

@@ -7,7 +7,8 @@
 
 namespace palpate::client {
 
-/// A device made of a person: a hand whose arm follows a trajectory, and presses the buttons that it names.
+/// A device made of a person: a hand whose arm follows a trajectory, turns the tool exactly as that does, and
+/// presses the buttons that it names.
 /// Deterministic: its state depends only on the times of `read` and the forces of `write`.
 class SimulatedOperator : public Device {
  public:

@@ -88,6 +88,10 @@ ToolState Pipeline::sense(const DeviceReading& reading) noexcept {
     sensed_.v_W += dt / (dt + kVelocityFilter) * ((p_W - sensed_.p_W) / dt - sensed_.v_W);
   }
   sensed_.p_W = p_W;
+  if (reading.q_D) {
+    const Quat turned = Quat(workspace_.axes) * *reading.q_D;
+    sensed_.q_W = {turned.w(), turned.x(), turned.y(), turned.z()};
+  }
   return sensed_;
 }
 

@@ -70,13 +70,6 @@ Passivity::Settings read_passivity(const Config& config) {
   return passivity;
 }
 
-/// The file tells the motion in the world; the simulated hand moves in the device frame.
-void put_in_device_frame(TrajectorySettings& trajectory, const Workspace& workspace) {
-  trajectory.scale /= workspace.scale;
-  trajectory.offset = workspace.motion_to_device(trajectory.offset - workspace.offset_W);
-  trajectory.axes = workspace.axes.transpose();
-}
-
 }  // namespace
 
 std::vector<std::string> ClientConfig::scored_laws() const {
@@ -121,7 +114,8 @@ ClientConfig read_client_config(const std::filesystem::path& file) {
   if (const auto trajectory = config.table("trajectory"))
     client.device.trajectory = read_trajectory_settings(*trajectory);
   if (const auto workspace = config.table("workspace")) client.workspace = read_client_workspace(*workspace);
-  if (client.device.trajectory) put_in_device_frame(*client.device.trajectory, client.workspace);
+  // The file tells the motion in the world; the simulated hand moves in the device frame.
+  if (client.device.trajectory) client.device.trajectory->frame = client.workspace;
   if (const auto limits = config.table("limits")) client.limits = read_limits(*limits);
   if (const auto passivity = config.table("passivity")) client.passivity = read_passivity(*passivity);
   config.reject_unknown();

@@ -182,7 +182,7 @@ class Study:
 
     def record(self, weight, cell, rate, out, *more):
         self.workers.command(weight, BIN / "sim_server", "record", cell.scene(self.folder), *cell.motions(self.folder),
-                             "--rate", rate, "--seconds", cell.seconds, "--out", out, *more)
+                             "--rate", rate, "--seconds", cell.seconds, "--out", out, "--force", *more)
 
     def evaluate(self, weight, cell, captures, folder, *more):
         """Rows, with the nominal speed, rate and delay; `captures`: {(rate, delay): file}."""
@@ -218,7 +218,7 @@ class Study:
         """[{column: text}], a row a tick at 500 Hz."""
         client, out = self.folder / "figures.toml", capture.with_suffix(".csv")
         self.workers.command(0, BIN / "haptic_client", "replay", capture, "--client", client, "--method", law,
-                             "--rate", 500, "--out", out)
+                             "--rate", 500, "--out", out, "--force")
         with open(out, newline="", encoding="ascii") as file:
             return [row for row in csv.DictReader(file) if float(row["t_s"]) >= FIGURES_FROM]
 

@@ -83,7 +83,7 @@ def perform(run, motions, scene, quick, workers, programs, folder):
         capture, out = folder / f"{rate:.0f}.pcap", folder / f"{rate:.0f}_{keep}"
         if keep == 1:
             run_program(programs / "sim_server", "record", scene, *both, "--tool", run.tool + 1, "--rate", rate, "--out",
-                        capture)
+                        capture, "--force")
         run_program(programs / "haptic_client", "evaluate", capture, "--keep", keep, "--world",
                     f"pull_{run.model}", "--out", out)
         for row in json.loads((out / "summary.json").read_text(encoding="ascii")):

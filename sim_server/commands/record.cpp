@@ -8,6 +8,7 @@
 #include "common/config.h"
 #include "common/error.h"
 #include "common/log.h"
+#include "common/overwrite.h"
 #include "common/progress.h"
 #include "common/report.h"
 #include "sim_server/commands/explain.h"
@@ -23,15 +24,6 @@ constexpr double kUsualTicks = 500;           // Hz
 constexpr std::uint64_t kSearchAround = 256;  // ticks between two looks at the progress line
 constexpr double kLongest = 1e5;              // s
 
-/// A CSV (t_s, x_m, y_m, z_m, world), or a client file whose [trajectory] says how to read one.
-Trajectory read_motion(const std::filesystem::path& file) {
-  if (file.extension() != ".toml") return Trajectory(TrajectorySettings{.file = file});
-  const Config client = Config::read(file);
-  const auto section = client.table("trajectory");
-  if (!section) fail("{}: has no [trajectory] section to take the motion from", file.string());
-  return Trajectory(read_trajectory_settings(*section));
-}
-
 /// Reads the motions in the order of the tools; a tool that is captured needs one.
 std::vector<Trajectory> read_motions(const RecordOptions& options, const Scene& scene) {
   if (options.trajectories.size() > scene.tools.size())
@@ -41,7 +33,10 @@ std::vector<Trajectory> read_motions(const RecordOptions& options, const Scene& 
     fail("--tool {}: has no motion; give --trajectory once for each tool of the scene, in their order",
          options.tool);
   std::vector<Trajectory> motions;
-  for (const auto& file : options.trajectories) motions.push_back(read_motion(file));
+  for (const auto& file : options.trajectories) {
+    motions.emplace_back(motion_settings(file));
+    motions.back().log_source();
+  }
   return motions;
 }
 
@@ -70,6 +65,8 @@ void require_distinct_files(const RecordOptions& options, const Scene& scene) {
 void check_record_files(const RecordOptions& options, const Scene& scene) {
   require_distinct_files(options, scene);
   if (options.report) check_writable(*options.report, Contents::kReport);
+  require_new({{"--out", options.out}, {"--resection", options.resection}, {"--removals", options.removals}},
+              options.force);
   require_resection("--resection", options.resection, scene);
   require_resection("--removals", options.removals, scene);
   if (!scene.cutting) require_resection("--remove", options.remove, scene);
@@ -154,8 +151,10 @@ Json make_report(const RecordOptions& options, const VirtualSession& session, do
                  {"flagged_by", simulation.flagged().to_json()},
                  {"strain", simulation.strain() != nullptr ? simulation.strain()->to_json() : Json()},
                  {"max_newton", stats.max_newton},
+                 {"missed_by_m", nullptr},
                  {"resection", resection_report(simulation)},
                  {"state_hash", fmt::format("{:016x}", simulation.state_hash())}};
+  if (const auto missed = stats.missed.missed_by(options.tool - 1)) report["missed_by_m"] = *missed;
   add_to(report, "snap", stats.snaps.snaps());
   add_to(report, "unexplained_jump", stats.jumps.jumps());
   return report;
@@ -173,6 +172,11 @@ void print_recording(const RecordOptions& options, const VirtualSessionStats& st
       stats.in_contact, 1e-6 * stats.contact_step_ns.quantile(0.5),
       1e-6 * stats.contact_step_ns.quantile(0.99), stats.flagged,
       stats.flagged > 0 ? " (" + simulation.flagged().to_text() + ")" : "", stats.max_newton);
+  for (std::size_t i = 0; i < options.trajectories.size(); ++i) {
+    if (const auto missed = stats.missed.missed_by(i))
+      fmt::print("            {}; are its places metres in the scene's frame ([trajectory] scale, offset)?\n",
+                 never_touched_text(i, *missed));
+  }
   if (const auto snaps = stats.snaps.snaps()) fmt::print("            {}\n", snaps_text(*snaps));
   if (const auto jumps = stats.jumps.jumps()) fmt::print("            {}\n", unexplained_text(*jumps));
   if (simulation.strain() != nullptr && !simulation.strain()->to_text().empty())
@@ -260,6 +264,7 @@ Command record_command() {
                  &options->rate_hz,
                  {.required = true}},
                 {"--out", "Capture to write (pcap)", &options->out, {.required = true}},
+                force_option(options->force),
                 {"--delay-ms",
                  "From reading the tool to having its force in the client, ms, 0 to 10000",
                  &options->delay_ms,

@@ -23,6 +23,7 @@ struct RecordOptions {
   std::optional<std::filesystem::path> resection;  ///< CSV of what was removed
   /// CSV (t_s, tetrahedron) of the tetrahedra that went; and one of those that are to go, instead of by heat.
   std::optional<std::filesystem::path> removals, remove;
+  bool force = false;  ///< overwrites files that are there
   CacheOptions cache;
 };
 

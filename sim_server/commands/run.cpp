@@ -10,6 +10,7 @@
 #include "common/error.h"
 #include "common/interrupt.h"
 #include "common/log.h"
+#include "common/overwrite.h"
 #include "common/progress.h"
 #include "common/realtime.h"
 #include "common/report.h"
@@ -74,10 +75,8 @@ Json timeline_report(const Timeline<StepCell>& timeline) {
   return {{"cell_s", to_seconds(timeline.width())}, {"cells", cells}};
 }
 
-/// Returns by how much a tool that was held, but never touched, missed the tissue, m.
-Json missed_by(const ToolStats& tool) {
-  if (tool.contact_steps > 0 || !tool.nearest_m) return nullptr;
-  return *tool.nearest_m;
+Json json_of(std::optional<double> value) {
+  return value ? Json(*value) : Json(nullptr);
 }
 
 Json percent_of(const DiscretisationError& error) {
@@ -99,11 +98,13 @@ Json tools_report(const SimLoopStats& stats, const NetLink& link, const Scene& s
                   const ErrorOfForce& errors) {
   Json tools = Json::array();
   for (std::size_t i = 0; i < scene.tools.size(); ++i) {
-    Json tool = {
-        {"radius_m", scene.tools[i].shape.radius},       {"max_newton", stats.tools[i].max_newton},
-        {"contact_steps", stats.tools[i].contact_steps}, {"beyond_steps", stats.tools[i].beyond_steps},
-        {"missed_by_m", missed_by(stats.tools[i])},      {"rendered", rendered_report(errors, i)},
-        {"sessions", link.tools[i].so_far.load()}};
+    Json tool = {{"radius_m", scene.tools[i].shape.radius},
+                 {"max_newton", stats.tools[i].max_newton},
+                 {"contact_steps", stats.tools[i].contact_steps},
+                 {"beyond_steps", stats.tools[i].beyond_steps},
+                 {"missed_by_m", json_of(stats.missed.missed_by(i))},
+                 {"rendered", rendered_report(errors, i)},
+                 {"sessions", link.tools[i].so_far.load()}};
     add_to(tool, "unexplained_jump", stats.tools[i].jumps.jumps());
     tools.push_back(std::move(tool));
   }
@@ -179,11 +180,8 @@ void print_summary(const Json& report, const Simulation& simulation) {
   for (std::size_t i = 0; i < report["tools"].size(); ++i) {
     const Json& missed = report["tools"][i]["missed_by_m"];
     if (missed.is_null()) continue;
-    fmt::print(
-        "            tool {} never touched the organ: it came within {:.1f} mm of it; is the client file "
-        "made "
-        "for this scene ([session] clients)?\n",
-        i + 1, 1e3 * missed.get<double>());
+    fmt::print("            {}; is the client file made for this scene ([session] clients)?\n",
+               never_touched_text(i, missed.get<double>()));
   }
   print_errors(report);
   for (std::size_t i = 0; i < report["tools"].size(); ++i) {
@@ -265,6 +263,7 @@ void check_run_files(const ServerOptions& options, const Scene& scene) {
                     {"--resection", options.resection},
                     {"--record", options.record}});
   if (options.report) check_writable(*options.report, Contents::kReport);
+  require_new({{"--resection", options.resection}, {"--record", options.record}}, options.force);
   require_resection("--resection", options.resection, scene);
 }
 
@@ -320,6 +319,7 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
                                  const std::vector<GalleryScene>& gallery, const Scene& scene,
                                  std::optional<Scene>& before) {
   check_run_files(options, scene);
+  options.force = true;  // from here on these files are of this run
   std::vector<double> radii;
   for (const ToolSettings& tool : scene.tools) radii.push_back(tool.shape.radius);
   protocol::ServerSessions sessions = sessions_for(options.listen, scene.rate_hz, radii);
@@ -412,6 +412,7 @@ Command run_command() {
                     &options->record_mb,
                     {.within = Bounds{0.01, 1e6}, .needs = "--record"}},
                    resection_option(options->resection),
+                   force_option(options->force),
                    viewer_option(options->viewer)},
                   cache_options(options->cache)}),
       .run = [options] {

@@ -39,7 +39,10 @@ std::string fingerprint(const StudyOptions& options, const StudyPlan& plan) {
   add_file(hash, options.scene);
   add_file(hash, plan.cases.front().scene.mesh_file);
   for (const auto& mesh : options.meshes) add_file(hash, mesh);
-  if (options.trajectory) add_file(hash, *options.trajectory);
+  if (options.trajectory) {
+    add_file(hash, *options.trajectory);  // a client file says how to read the motion
+    add_file(hash, motion_settings(*options.trajectory).file);
+  }
   add_file(hash, "/proc/self/exe");
   return fmt::format("{:016x}", hash.value());
 }
@@ -63,7 +66,8 @@ class Runner {
     const std::filesystem::path file = options.trajectory.value_or(folder_ / (own.name() + "-motion.csv"));
     if (!options.trajectory && !std::filesystem::exists(file))
       run_separately(own.name(), [&] { write_motion(file, press_and_slide(own)); });
-    motion_.emplace(TrajectorySettings{.file = file});
+    motion_.emplace(motion_settings(file));
+    if (options.trajectory) motion_->log_source();
     seconds_ = motion_->duration();
     if (seconds_ < 4 / own.scene.rate_hz)
       fail("{}: lasts {:g} s, which is less than four steps of the scene", file.string(), seconds_);
@@ -243,8 +247,8 @@ Command study_command() {
              {.required = true}},
             {"--mesh", "Another mesh of the same organ, coarser or finer; repeatable", &options.meshes},
             {"--trajectory",
-             "Motion of the tool: a CSV (t_s, x_m, y_m, z_m) (default: pressed, slid to and fro, lifted, 2 "
-             "s)",
+             "Motion of the tool: a CSV (t_s, x_m, y_m, z_m), or a client file with a [trajectory] (default: "
+             "pressed, slid to and fro, lifted, 2 s)",
              &options.trajectory},
             {"--budget-ms",
              "Report the case with the smallest rendered error within so many ms a step, as TOML",

@@ -31,6 +31,7 @@ SimLoop::SimLoop(Simulation& simulation, double rate_hz, SimMailboxes& mailboxes
       errors_(errors),
       observer_(observer) {
   stats_.tools.resize(simulation.tools());
+  stats_.missed = MissedTools(simulation.tools());
   pass_surfaces_on();
 }
 
@@ -130,18 +131,6 @@ void SimLoop::count_beyond(std::size_t tool) noexcept {
   went_beyond[tool].store(true, std::memory_order_relaxed);
 }
 
-/// Measures by how much a tool misses the tissue, for whoever never touches it.
-void SimLoop::measure_distance(Time now) noexcept {
-  if (now < next_search_) return;
-  next_search_ = now + kIdlePeriod;
-  for (std::size_t i = 0; i < stats_.tools.size(); ++i) {
-    ToolStats& tool = stats_.tools[i];
-    if (tool.contact_steps > 0) continue;
-    const std::optional<double> gap = simulation_.gap(i);
-    if (gap && (!tool.nearest_m || *gap < *tool.nearest_m)) tool.nearest_m = gap;
-  }
-}
-
 void SimLoop::note_cuts() noexcept {
   if (simulation_.resection() == nullptr) return;
   if (simulation_.resection()->totals().time_at_end > 0) cut_to_end.store(true, std::memory_order_relaxed);
@@ -164,7 +153,7 @@ void SimLoop::count(std::span<const ServedTools::Outcome> outcomes, Time start, 
     flagged = flagged || force.flagged;
     largest = std::max(largest, newton);
   }
-  measure_distance(start + took);
+  stats_.missed.measure(outcomes, simulation_, start + took);
   note_cuts();
   stats_.step_ns.add(took.count());
   stats_.timeline.at(start) += {1, took_ns, took_ns, 0};

@@ -11,7 +11,7 @@
 #include "common/latest_value.h"
 #include "common/time.h"
 #include "common/timeline.h"
-#include "sim_server/serving/served_tools.h"
+#include "sim_server/serving/missed_tools.h"
 
 namespace palpate::sim {
 
@@ -45,8 +45,7 @@ struct ToolStats {
   std::uint64_t contact_steps = 0;
   std::uint64_t beyond_steps = 0;  ///< with its tip beyond its workspace or cone, where nothing is built
   double max_newton = 0;
-  UnexplainedJumps jumps{};           ///< between the samples of its sessions
-  std::optional<double> nearest_m{};  ///< before it first touched, looked at ten times a second
+  UnexplainedJumps jumps{};  ///< between the samples of its sessions
 };
 
 /// Measurements of the loop; read them when the loop has ended.
@@ -56,6 +55,7 @@ struct SimLoopStats {
   std::uint64_t late = 0;              ///< deadlines passed over because a step took too long
   std::uint64_t flagged = 0;           ///< steps without a settled answer
   std::vector<ToolStats> tools;
+  MissedTools missed;
 
   /// Largest force on any tool, N.
   double max_newton() const noexcept;
@@ -112,7 +112,6 @@ class SimLoop {
   LoopTurn step(double dt, bool paused) noexcept;
   void report_paused() noexcept;
   void count_beyond(std::size_t tool) noexcept;
-  void measure_distance(Time now) noexcept;
   void note_cuts() noexcept;
   void pass_surfaces_on();
   void count(std::span<const ServedTools::Outcome> outcomes, Time start, Time took) noexcept;
@@ -122,7 +121,7 @@ class SimLoop {
   std::uint32_t passed_on_ = 0;  // number of the published surface
   SimMailboxes& mailboxes_;
   std::span<const ToolSettings> tools_;
-  Time period_, next_search_{}, next_published_{};
+  Time period_, next_published_{};
   std::vector<SessionInput> inputs_;
   ErrorOfForce& errors_;
   LoopObserver* observer_;

@@ -27,8 +27,18 @@ std::uint64_t session_number(const Trajectory& motion, const VirtualLink& link) 
   for (int i = 0; i <= kPlaces; ++i) {
     const Vec3 p = motion.at(i * motion.duration() / kPlaces);
     hash.add(p.data(), sizeof p);
+    if (motion.turns()) {
+      const Quat q = motion.orientation_at(i * motion.duration() / kPlaces);
+      hash.add(q.coeffs().data(), sizeof q);
+    }
   }
   return hash.value() | 1;
+}
+
+/// Returns the state of a tool that follows `motion` exactly, `t` (s) after its start, without the velocity.
+ToolState state_at(const Trajectory& motion, double t) {
+  const Quat q = motion.orientation_at(t);
+  return {.p_W = motion.at(t), .q_W = {q.w(), q.x(), q.y(), q.z()}, .buttons = motion.buttons_at(t)};
 }
 
 const Endpoint kClient = documentation_address(1, 45131), kServer = documentation_address(2, 45130);
@@ -38,7 +48,8 @@ const Endpoint kClient = documentation_address(1, 45131), kServer = documentatio
 VirtualSession::VirtualSession(Simulation& simulation, std::span<const Trajectory> motions,
                                double tool_radius, const VirtualLink& link, CaptureWriter& capture,
                                const ErrorOfForce* errors)
-    : served_(simulation, errors),
+    : simulation_(simulation),
+      served_(simulation, errors),
       inputs_(simulation.tools()),
       motions_(motions.first(std::min(motions.size(), simulation.tools()))),
       link_(link),
@@ -50,6 +61,7 @@ VirtualSession::VirtualSession(Simulation& simulation, std::span<const Trajector
                     .sent = {},
                     .has = {}} {
   stats_.snaps = SnapCounter(link.rate_hz);
+  stats_.missed = MissedTools(simulation.tools());
 }
 
 Time VirtualSession::time_of(std::uint64_t k) const {
@@ -59,11 +71,13 @@ Time VirtualSession::time_of(std::uint64_t k) const {
 void VirtualSession::tick(std::uint64_t k) {
   const Time t = now_ = time_of(k);
   keep_session(t);
-  ToolState state{.tool = client_.welcome().tool, .tick = k + 1, .t_ns = t.count()};
-  state.p_W = newest_p_W_ = motions_[link_.tool].at(to_seconds(t));
+  ToolState state = state_at(motions_[link_.tool], to_seconds(t));
+  state.tool = client_.welcome().tool;
+  state.tick = k + 1;
+  state.t_ns = t.count();
+  newest_p_W_ = state.p_W;
   if (k > 0) state.v_W = link_.ticks_hz * (state.p_W - motions_[link_.tool].at(to_seconds(time_of(k - 1))));
   newest_v_W_ = state.v_W;
-  state.buttons = motions_[link_.tool].buttons_at(to_seconds(t));
   if (link_.parts) {
     state.flags |= ToolState::kRequestsTangent | ToolState::kRequestsAhead | ToolState::kRequestsSurface |
                    ToolState::kRequestsErrors;
@@ -126,6 +140,7 @@ void VirtualSession::step(const ToolState& state, double steps_due) {
     stats_.contact_step_ns.add(took.count());
   }
   stats_.flagged += std::ranges::any_of(outcomes, is_flagged) ? 1 : 0;
+  stats_.missed.measure(outcomes, simulation_, answered_);
   for (const ServedTools::Outcome& outcome : outcomes)
     stats_.max_newton = std::max(stats_.max_newton, outcome.force.force.norm());
   const ServedTools::Outcome& outcome = outcomes[link_.tool];
@@ -142,9 +157,10 @@ void VirtualSession::note_paths(const ToolState& state) {
   for (std::size_t i = 0; i < motions_.size(); ++i) {
     ToolState newest = state;
     if (i != link_.tool) {
-      newest = {.tool = static_cast<std::uint8_t>(i), .tick = state.tick, .t_ns = state.t_ns};
-      newest.p_W = motions_[i].at(t);
-      newest.buttons = motions_[i].buttons_at(t);
+      newest = state_at(motions_[i], t);
+      newest.tool = static_cast<std::uint8_t>(i);
+      newest.tick = state.tick;
+      newest.t_ns = state.t_ns;
       if (t >= tick) newest.v_W = link_.ticks_hz * (newest.p_W - motions_[i].at(t - tick));
     }
     inputs_[i].session = i == link_.tool ? session_ : session_ + 1 + i;

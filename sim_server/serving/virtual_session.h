@@ -7,7 +7,7 @@
 #include "protocol/capture.h"
 #include "protocol/near_tiles.h"
 #include "protocol/session.h"
-#include "sim_server/serving/served_tools.h"
+#include "sim_server/serving/missed_tools.h"
 
 namespace palpate::sim {
 
@@ -37,6 +37,7 @@ struct VirtualSessionStats {
   std::uint64_t tool_states = 0, force_samples = 0, in_contact = 0, flagged = 0;
   std::uint64_t late = 0;  ///< deadlines passed over because a step took too long
   double max_newton = 0;
+  MissedTools missed;
   SnapCounter snaps{0};       ///< of the force of the session's tool, of steps at 2000 Hz or more
   UnexplainedJumps jumps;     ///< between the samples of the session
   Histogram contact_step_ns;  ///< processor time of the steps in contact, with all that the client asks for
@@ -88,6 +89,7 @@ class VirtualSession {
   void to_server(const protocol::Header& header, const protocol::Message& message, Time t);
   void to_client(const protocol::Header& header, const protocol::Message& message, Time t);
 
+  const Simulation& simulation_;
   ServedTools served_;
   std::vector<SessionInput> inputs_;  // nobody holds those without a motion
   std::span<const Trajectory> motions_;

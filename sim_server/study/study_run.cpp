@@ -92,8 +92,9 @@ Trace run_case(const StudyCase& one, const Trajectory& motion, double seconds, s
   const auto steps = static_cast<int>(std::lround(seconds / trace.dt));
   for (int k = 1; k <= steps; ++k) {
     const Vec3 place = motion.at(k * trace.dt);
+    const ToolPose pose(place, motion.orientation_at(k * trace.dt));
     const Time start = now();
-    const ToolForce rendered = simulation.step(place, trace.dt);
+    const ToolForce rendered = simulation.step(pose, trace.dt);
     const Time took = now() - start;
     if (rendered.contacts > 0) ns.add(took.count());
     trace.flagged += rendered.flagged ? 1 : 0;

@@ -36,11 +36,11 @@ struct PressedColumn {
                       report = (folder.path() / "report.json").string();
     output_of("sim_server",
               {"record", scene, "--trajectory", (folder.path() / "motion.csv").string(), "--rate", "30",
-               "--out", capture, "--cache", cache},
+               "--out", capture, "--force", "--cache", cache},
               0);
     said = output_of("haptic_client",
                      {"replay", capture, "--client", kClient, "--method", "two_tangents", "--report", report,
-                      "--out", (folder.path() / "trace.csv").string()},
+                      "--force", "--out", (folder.path() / "trace.csv").string()},
                      0);
     return read_json(report)["tools"][0]["rendered"];
   }

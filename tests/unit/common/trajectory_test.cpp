@@ -38,7 +38,7 @@ TEST_CASE("buttons that are no bits are one line with file, column and value") {
   for (const char* const wrong : {"-1", "0.5", "65536"}) {
     CAPTURE(wrong);
     CHECK_THROWS_WITH(read(std::string("t_s,x_m,y_m,z_m,buttons\n0,0,0,0,") + wrong + "\n"),
-                      Catch::Matchers::Contains("motion.csv: column buttons holds") &&
+                      Catch::Matchers::Contains("motion.csv:2: column buttons holds") &&
                           Catch::Matchers::Contains("0 to 65535"));
   }
 }

@@ -1,5 +1,7 @@
 #include "haptic_client/device/simulated_operator.h"
 
+#include <cmath>
+
 #include "common/error.h"
 #include "tests/support/catch.h"
 #include "tests/support/temporary_folder.h"
@@ -47,7 +49,8 @@ TEST_CASE("trajectories: interpolation, ends, repetition, scale and offset") {
   CHECK(open.at(50)[0] == Approx(0.1));
   const test::TemporaryFolder folder;
   const auto file = folder.write("m.csv", "time,a,b,c\n10,1,2,3\n11,2,2,3\n");
-  const Trajectory read({file, {"time", "c", "a", "b"}, 0.001, Vec3(0, 0, 1)});
+  const Trajectory read(
+      {.file = file, .columns = {"time", "c", "a", "b"}, .scale = 0.001, .offset = Vec3(0, 0, 1)});
   CHECK((read.at(0.5) - Vec3(0.003, 0.0015, 1.002)).norm() < 1e-15);
   const auto bad = folder.write("bad.csv", "t_s,x_m,y_m,z_m\n0,0,0,0\n0,1,1,1\n");
   CHECK_THROWS_AS(Trajectory({.file = bad}), Error);
@@ -62,4 +65,17 @@ TEST_CASE("trajectories: one that ends near its start stays at its end unless it
   const auto far = folder.write("far.csv", "t_s,x_m,y_m,z_m\n0,0,0,0\n1,0,-0.5,0\n");
   CHECK_THROWS_WITH(Trajectory({.file = far, .repeat = true}),
                     Catch::Contains("ends 500 mm from where it began"));
+}
+
+TEST_CASE("the hand turns the tool as its motion does, and tells no orientation where that has none") {
+  const test::TemporaryFolder folder;
+  const auto turns =
+      folder.write("q.csv", "t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n0.2,0,0,0,0,1,0,0\n");
+  SimulatedOperator turning({}, Trajectory({.file = turns})), still({}, Trajectory({0}, {Vec3::Zero()}));
+  turning.read(0s);
+  std::optional<Quat> half;  // of the half turn about x
+  for (int tick = 1; tick <= 50; ++tick) half = turning.read(tick * 2ms).q_D;
+  REQUIRE(half);
+  CHECK(half->angularDistance(Quat(std::sqrt(0.5), std::sqrt(0.5), 0, 0)) < 1e-7);
+  CHECK_FALSE(still.read(0s).q_D);
 }

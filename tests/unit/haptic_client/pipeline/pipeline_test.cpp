@@ -52,6 +52,18 @@ TEST_CASE("after the soft start the sample's force comes through, the workspace 
   CHECK((result.tool.p_W - Vec3(0.12, 0, 0)).norm() < 1e-15);
 }
 
+TEST_CASE(
+    "the orientation of a device comes to the world through the axes of the workspace, without one it "
+    "stays") {
+  Mat3 axes;
+  axes << 1, 0, 0, 0, 0, -1, 0, 1, 0;  // a quarter turn about x
+  Pipeline pipeline = make(0, {.axes = axes});
+  using Turned = std::array<double, 4>;
+  CHECK(pipeline.sense({.t = 1s}).q_W == Turned{1, 0, 0, 0});
+  const Turned q = pipeline.sense({.t = 2s, .q_D = Quat(0, 0, 1, 0)}).q_W;  // its z axis to -z, then to y
+  CHECK((Quat(q[0], q[1], q[2], q[3]) * Vec3::UnitZ() - Vec3::UnitY()).norm() < 1e-15);
+}
+
 TEST_CASE("exactly zero out of contact, for every law, though they look back at a contact") {
   for (std::size_t law = 0; law < extrapolators().size(); ++law) {
     Pipeline pipeline = make(law);

@@ -89,13 +89,39 @@ TEST_CASE("axes of the workspace: a rotation, and nothing else") {
   CHECK_THROWS_WITH(axes("\"x\", \"y\", \"up\""), Catch::Contains("\"up\" is no axis"));
 }
 
-TEST_CASE("a motion told in the world reaches the same place through turned axes") {
+TEST_CASE("a motion told in the world reaches the same place and orientation through turned axes") {
   const test::TemporaryFolder folder;
-  folder.write("m.csv", "t_s,x_m,y_m,z_m\n0,0.01,0.02,0.03\n1,0.01,0.02,0.03\n");
+  folder.write("m.csv",
+               "t_s,x_m,y_m,z_m,qw,qx,qy,qz\n0,0.01,0.02,0.03,0,0.6,0.8,0\n1,0.01,0.02,0.03,0,0.6,0.8,0\n");
   const ClientConfig config = read_client_config(folder.write(
       "c.toml",
       "[trajectory]\nfile = \"m.csv\"\n[workspace]\naxes = [\"x\", \"-z\", \"y\"]\noffset = [0, 5, "
       "0]\n"));
   const Vec3 p_D = Trajectory(*config.device.trajectory).at(0.5);
   CHECK((config.workspace.to_world(p_D) - Vec3(0.01, 0.02, 0.03)).norm() < 1e-12);
+  const Quat q_D = Trajectory(*config.device.trajectory).orientation_at(0.5);
+  CHECK((Quat(config.workspace.axes) * q_D).angularDistance(Quat(0, 0.6, 0.8, 0)) < 1e-7);
+}
+
+TEST_CASE("keys of a recorded motion: read with their ranges, `columns` without time where a rate is told") {
+  const test::TemporaryFolder folder;
+  const auto read = [&](const std::string& keys) {
+    return *read_client_config(folder.write("c.toml", "[trajectory]\nfile = \"m.csv\"\n" + keys))
+                .device.trajectory;
+  };
+  const TrajectorySettings motion =
+      read("time_scale = 1e-3\ngap = 0.5\nscale = 0.01\naxes = [\"x\", \"z\", \"-y\"]\n");
+  CHECK(motion.time_scale == 1e-3);
+  CHECK(motion.gap == 0.5);
+  CHECK(motion.scale == 0.01);
+  CHECK(motion.axes * Vec3(1, 2, 3) == Vec3(1, 3, -2));
+  CHECK(read("").columns.empty());
+  CHECK(read("rate_hz = 60\ncolumns = [\"a\", \"b\", \"c\"]\n").rate_hz == 60);
+  for (const char* const wrong :
+       {"time_scale = 0", "gap = 0", "rate_hz = 0", "columns = [\"a\", \"b\", \"c\"]",
+        "rate_hz = 60\ntime_scale = 1", "rate_hz = 60\ncolumns = [\"t\", \"a\", \"b\", \"c\"]",
+        "axes = [\"x\", \"y\", \"-z\"]"}) {
+    CAPTURE(wrong);
+    CHECK_THROWS_WITH(read(wrong), Catch::Contains("c.toml:"));
+  }
 }
