@@ -7,7 +7,6 @@
 
 #include "common/error.h"
 #include "common/log.h"
-#include "common/overwrite.h"
 #include "common/progress.h"
 #include "common/text.h"
 #include "haptic_client/commands/overrides.h"
@@ -66,7 +65,6 @@ ChosenSession choose_session(const ReplayOptions& options) {
   require_distinct({{"CAPTURE", options.capture}, {"--out", options.out}, {"--report", options.report}});
   if (options.report) check_writable(*options.report, Contents::kReport);
   if (options.out) check_writable(*options.out, Contents::kTable);
-  require_new({{"--out", options.out}}, options.force);
   ProgressLine progress;
   CaptureSurvey found =
       survey(options.capture, [&](double fraction) { progress("reading the capture", fraction); });
@@ -221,7 +219,6 @@ Command replay_command() {
                   {"--rate", "Ticks per second, 1 to 20000 (default, or within 2 %: the capture's own ticks)",
                    &options.rate_hz},
                   {"--out", "CSV to write, a row a tick; with --live, of the last minute", &options.out},
-                  force_option(options.force),
                   {"--session", "Which session, where the capture has several", &options.session},
                   {"--report", "Write figures to this JSON file", &options.report},
                   {"--live", "Play the captured tool to a live server, in real time; nothing is moved",

@@ -16,7 +16,6 @@ struct ReplayOptions {
   std::optional<int> session;     ///< from 1, as listed; absent: the longest
   std::optional<std::filesystem::path> out;     ///< CSV, a row a tick
   std::optional<std::filesystem::path> report;  ///< JSON
-  bool force = false;                           ///< overwrites `out`
 };
 
 /// Plays the tool of a captured session to the live server of `config`, in real time, through pipeline and

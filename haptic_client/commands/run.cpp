@@ -15,7 +15,6 @@
 #include "common/error.h"
 #include "common/interrupt.h"
 #include "common/log.h"
-#include "common/overwrite.h"
 #include "common/realtime.h"
 #include "common/text.h"
 #include "haptic_client/commands/overrides.h"
@@ -76,7 +75,7 @@ std::vector<ToolFiles> files_of_tools(const ClientOptions& options, std::size_t 
 
 /// That the files of a run can be written, and none over another or over a motion that is read.
 void check_files(const std::optional<Path>& report, const std::vector<ToolFiles>& files,
-                 const std::vector<ClientConfig>& configs, bool force) {
+                 const std::vector<ClientConfig>& configs) {
   std::vector<NamedFile> written{{"--report", report}};
   for (const ToolFiles& tool : files)
     written.insert(written.end(), {{"--trace", tool.trace}, {"--record", tool.record}});
@@ -89,7 +88,6 @@ void check_files(const std::optional<Path>& report, const std::vector<ToolFiles>
   }
   if (report) check_writable(*report, Contents::kReport);
   for (const ToolFiles& tool : files) {
-    require_new({{"--trace", tool.trace}, {"--record", tool.record}}, force);
     if (tool.trace) check_writable(*tool.trace, Contents::kTable);
   }
 }
@@ -149,7 +147,7 @@ void watch(std::list<HeldTool>& tools, std::optional<double> seconds) {
 int run_client(const std::vector<ClientConfig>& configs, const ClientOptions& options) {
   check_together(configs);
   const std::vector<ToolFiles> files = files_of_tools(options, configs.size());
-  check_files(options.report, files, configs, options.force);
+  check_files(options.report, files, configs);
   report_missing_ports(configs);
   Guardian guardian(configs);  // before any thread; goes after the tools
   std::list<HeldTool> tools;
@@ -249,8 +247,7 @@ Command run_command() {
                   {"--record-mb",
                    "Go on in a new file at this size (F-2.pcap, ...); ten are kept",
                    &options.record_mb,
-                   {.within = Bounds{0.01, 1e6}}},
-                  force_option(options.force)},
+                   {.within = Bounds{0.01, 1e6}}}},
       .run = [requested] {
         if (requested->options.seconds) require_at_least(*requested->options.seconds, 1e-3, "--seconds", "s");
         return run_client(read_configs(*requested), requested->options);

@@ -14,7 +14,6 @@ struct ClientOptions {
   std::optional<std::filesystem::path> report;  ///< JSON written at the end
   std::optional<std::filesystem::path> trace;   ///< CSV of the last minute, a row a tick; a file each tool
   std::optional<std::filesystem::path> record;  ///< capture of every datagram; a file each tool
-  bool force = false;                           ///< overwrites traces and captures that are there
   std::optional<double> record_mb;              ///< size at which a recording goes on in a new file
 };
 

@@ -218,7 +218,7 @@ class Study:
         """[{column: text}], a row a tick at 500 Hz."""
         client, out = self.folder / "figures.toml", capture.with_suffix(".csv")
         self.workers.command(0, BIN / "haptic_client", "replay", capture, "--client", client, "--method", law,
-                             "--rate", 500, "--out", out, "--force")
+                             "--rate", 500, "--out", out)
         with open(out, newline="", encoding="ascii") as file:
             return [row for row in csv.DictReader(file) if float(row["t_s"]) >= FIGURES_FROM]
 

@@ -10,7 +10,6 @@
 #include "common/error.h"
 #include "common/interrupt.h"
 #include "common/log.h"
-#include "common/overwrite.h"
 #include "common/progress.h"
 #include "common/realtime.h"
 #include "common/report.h"
@@ -263,7 +262,6 @@ void check_run_files(const ServerOptions& options, const Scene& scene) {
                     {"--resection", options.resection},
                     {"--record", options.record}});
   if (options.report) check_writable(*options.report, Contents::kReport);
-  require_new({{"--resection", options.resection}, {"--record", options.record}}, options.force);
   require_resection("--resection", options.resection, scene);
 }
 
@@ -319,7 +317,6 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
                                  const std::vector<GalleryScene>& gallery, const Scene& scene,
                                  std::optional<Scene>& before) {
   check_run_files(options, scene);
-  options.force = true;  // from here on these files are of this run
   std::vector<double> radii;
   for (const ToolSettings& tool : scene.tools) radii.push_back(tool.shape.radius);
   protocol::ServerSessions sessions = sessions_for(options.listen, scene.rate_hz, radii);
@@ -412,7 +409,6 @@ Command run_command() {
                     &options->record_mb,
                     {.within = Bounds{0.01, 1e6}, .needs = "--record"}},
                    resection_option(options->resection),
-                   force_option(options->force),
                    viewer_option(options->viewer)},
                   cache_options(options->cache)}),
       .run = [options] {

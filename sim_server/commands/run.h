@@ -17,7 +17,6 @@ struct ServerOptions {
   std::optional<std::filesystem::path> report;     ///< JSON written at the end
   std::optional<std::filesystem::path> resection;  ///< CSV of what was removed, written at the end
   std::optional<std::filesystem::path> record;     ///< capture of every datagram
-  bool force = false;                              ///< overwrites files that are there
   std::optional<double> record_mb;                 ///< size at which it goes on in a new file
   CacheOptions cache;
   std::string viewer = "off";  ///< where the live page is served

@@ -40,7 +40,7 @@ struct PressedColumn {
               0);
     said = output_of("haptic_client",
                      {"replay", capture, "--client", kClient, "--method", "two_tangents", "--report", report,
-                      "--force", "--out", (folder.path() / "trace.csv").string()},
+                      "--out", (folder.path() / "trace.csv").string()},
                      0);
     return read_json(report)["tools"][0]["rendered"];
   }

@@ -33,8 +33,8 @@ struct Session {
   }
   std::unique_ptr<Process> start(const std::string& address,
                                  const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> arguments{"run",  bench.client, "--server", address,  "--report",
-                                       report, "--trace",    trace,      "--force"};
+    std::vector<std::string> arguments{"run",      bench.client, "--server", address,
+                                       "--report", report,       "--trace",  trace};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return usb.start("haptic_client", arguments);
   }

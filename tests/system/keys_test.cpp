@@ -151,7 +151,7 @@ TEST_CASE(
     const auto more = [&](std::vector<std::string> all) { return keyed ? bench.with_key(all) : all; };
     for (const Flood::Make& make : {Flood::Make(garbage), Flood::Make(greeting), Flood::Make(state)}) {
       const std::string capture = (bench.folder.path() / "S.pcap").string();
-      Server server(more({"--report", bench.report, "--record", capture, "--force"}));
+      Server server(more({"--report", bench.report, "--record", capture}));
       Flood flood(server.address, 20, make);  // 20 000 a second
       const std::string report = (bench.folder.path() / "client.json").string();
       output_of("haptic_client",
