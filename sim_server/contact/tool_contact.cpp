@@ -229,8 +229,7 @@ double ToolContact::increments_to(const ToolPose& pose) const noexcept {
   const double increments = std::clamp(std::ceil(motion / (kIncrement * tool_.radius)), 1.0, kMaxIncrements);
   if (!has_friction()) return increments;
   const Vec3 way = pose.p_W - now_.place.p_W, &before = trend_.travel.way;
-  const bool turns =
-      trend_.travel.surface.empty() || way.dot(before) < kCorner * way.norm() * before.norm();
+  const bool turns = trend_.travel.surface.empty() || way.dot(before) < kCorner * way.norm() * before.norm();
   const double wanted = std::ceil((turns ? 2 : 1) * motion / (kFrictionIncrement * tool_.radius));
   return std::max(increments, std::min(wanted, kFrictionIncrements));
 }

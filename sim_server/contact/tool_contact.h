@@ -65,7 +65,7 @@ class ToolContact {
   /// Goes to `pose` on a straight line (with friction: as `path` says), turning evenly, in increments on
   /// which no point of its axis goes farther than half its radius, so that a fast tool does not jump through
   /// the surface; shorter ones with friction, which follows the path. Slip is measured from where the tissue
-  /// really was: at the end of the last step, then of each increment.
+  /// really was: at the end of the last step, then of each increment (`slip_lead`).
   void advance_to(const ToolPose& pose, const Bend& path, ToolTissue tissue);
   /// The organ has moved under it: the tool goes along by `motion` (m), so that it stands on the surface as
   /// before.
@@ -147,8 +147,8 @@ class ToolContact {
   const Vec3& place() const { return now_.place.p_W; }
   /// Where the tip is, less `place`, m.
   const Vec3& tip_offset() const { return now_.tip_offset; }
-  /// Slip in the increment in hand is measured from ahead of its start, by this share of what tool and
-  /// surface did in the increment before; 0: from its start. With friction: then its direction is that at the
+  /// Returns by which share of what tool and surface did in the increment before the slip of the one in hand
+  /// is measured from ahead of its start; 0: from its start. With friction: then its direction is that at the
   /// end of the increment to second order, not only its mean over it (backward differences, Curtiss and
   /// Hirschfelder 1952, Proc. Natl. Acad. Sci. 38:235, of increments of any lengths). What sticks, or is at
   /// rest, is not ahead of itself.
