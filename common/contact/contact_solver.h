@@ -73,7 +73,9 @@ struct FeatureForce {
 
 /// Start of an increment. Slip is measured from it, and there is no other memory of friction: a node without
 /// contact carries none. The result of `solve` is the start of the next increment: nodes at `free` + u, the
-/// tip at the pose + u_tip. So a path is a chain of solves, on the server and wherever it is replayed.
+/// tip at the pose + u_tip. So a path is a chain of solves, on the server and wherever it is replayed. A
+/// caller may put all of it ahead by a part of what nodes and tip did in the increment before: slip is then
+/// that at the end of the increment, to second order. What stuck then is not ahead of the tip.
 struct IncrementStart {
   std::span<const Vec3> nodes;  ///< (m) the patch nodes, m, world; more do no harm
   Vec3 tip = Vec3::Zero();      ///< the tool's tip, m, world

@@ -161,12 +161,32 @@ void JointContact::gather(std::span<ToolContact> tools, Tissue& tissue) {
     near_.push_back(t);
     first[near_.size()] = patch_.triangles.size();
   }
+  const double lead = lead_slip(tools);
   const std::span<const Triangle> triangles(patch_.triangles);
   for (std::size_t k = 0; k < near_.size(); ++k) {
     touching_[k].triangles = triangles.subspan(first[k], first[k + 1] - first[k]);
-    const ToolPose was = tools[near_[k]].increment_start();
+    const ToolPose was = tools[near_[k]].slip_start(lead);
     touching_[k].start = {were_, was.p_W, was.q_W};
   }
+}
+
+/// Puts the places from which the slip of nodes is measured ahead, by as much for one tool as for another, as
+/// they share nodes: as for the tool with the least. Returns that share.
+double JointContact::lead_slip(std::span<const ToolContact> tools) {
+  std::optional<double> least;
+  for (const std::size_t t : near_) {
+    if (!tools[t].has_friction() || !tools[t].has_way()) continue;
+    least = std::min(least.value_or(1), tools[t].slip_lead());
+  }
+  const double lead = least.value_or(0);
+  for (std::size_t i = 0; lead > 0 && i < vertices_.size(); ++i) {
+    for (const std::size_t t : near_) {
+      const Vec3 ahead = tools[t].surface_lead(vertices_[i], lead);
+      were_[i] += ahead;
+      if (!ahead.isZero(0)) break;
+    }
+  }
+  return lead;
 }
 
 /// The shape of the surface free of all tools but those that grasp.

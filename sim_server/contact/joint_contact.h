@@ -39,6 +39,7 @@ class JointContact {
   bool go(std::span<ToolContact> tools, Tissue& tissue);
   bool solve(std::span<ToolContact> tools, Tissue& tissue);
   void gather(std::span<ToolContact> tools, Tissue& tissue);
+  double lead_slip(std::span<const ToolContact> tools);
   void hold_grasps(std::span<const ToolContact> tools, Tissue& tissue);
   int node_of(int vertex, const ToolContact& tool, const ToolTissue& tissue);
   void take_compliance(const Tissue& tissue);

@@ -10,8 +10,11 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kIncrement = 0.5;  // of the tool radius: how far the tool goes between two contact solves
-// With friction, which follows the path: shorter, as many as a step has time for.
-constexpr double kFrictionIncrement = 0.01, kFrictionIncrements = 16;
+// With friction, which follows the path: shorter, as many as a step has time for; and half as long in a step
+// that turns off the increment before, whose slip says nothing about it (the cosine of the angle).
+constexpr double kFrictionIncrement = 0.08, kFrictionIncrements = 16, kCorner = 0.5;
+// Of the increment before: how long the next may be for the slip of both to count.
+constexpr double kLongerIncrement = 2;
 constexpr double kMaxJump = 0.1;        // of the tool radius: what the surface may move by at once
 constexpr double kGather = 1.5;         // of the tool radius: how far from the tip the patch extends
 constexpr double kRoomOfAxis = 2.0;     // the same, as room is made for a tool that lies along the surface
@@ -57,9 +60,10 @@ ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, c
   if (!has_friction()) return;
   surface_was_.assign(rest.begin(), rest.end());
   for (Trend* const trend : {&trend_, &stored_trend_}) {
-    trend->surface.reserve(static_cast<std::size_t>(finder_.max_nodes()));
+    trend->travel.surface.reserve(static_cast<std::size_t>(finder_.max_nodes()));
     trend->forces.reserve(static_cast<std::size_t>(finder_.max_nodes() + finder_.max_triangles()));
   }
+  before_.surface.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   nodes_were_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
 }
 
@@ -72,7 +76,7 @@ void ToolContact::change_surface(std::span<const Vec3> rest, const Surface& surf
   predictor_.changes.clear();
   stored_predictor_.changes.clear();
   for (Trend* const trend : {&trend_, &stored_trend_}) {
-    trend->surface.clear();
+    trend->travel.surface.clear();
     trend->forces.clear();
   }
   std::erase_if(stored_loads_, [&](const VertexLoad& load) { return !on_surface(load.vertex); });
@@ -224,7 +228,9 @@ double ToolContact::increments_to(const ToolPose& pose) const noexcept {
   const double motion = (pose.p_W - now_.place.p_W).norm() + turn;
   const double increments = std::clamp(std::ceil(motion / (kIncrement * tool_.radius)), 1.0, kMaxIncrements);
   if (!has_friction()) return increments;
-  const double wanted = std::ceil(motion / (kFrictionIncrement * tool_.radius));
+  const Vec3 way = pose.p_W - now_.place.p_W, &before = trend_.travel.way;
+  const bool turns = trend_.travel.surface.empty() || way.dot(before) < kCorner * way.norm() * before.norm();
+  const double wanted = std::ceil((turns ? 2 : 1) * motion / (kFrictionIncrement * tool_.radius));
   return std::max(increments, std::min(wanted, kFrictionIncrements));
 }
 
@@ -395,7 +401,7 @@ void ToolContact::separate() noexcept {
   now_.side = -1;
   now_.force = {};
   predictor_.changes.clear();
-  trend_.surface.clear();
+  trend_.travel.surface.clear();
   trend_.forces.clear();
   if (grip_) grip_->open();
 }
@@ -405,6 +411,7 @@ void ToolContact::start_increment(bool first, const ToolTissue& tissue) {
   const ToolPose tip(now_.place.p_W + now_.tip_offset, now_.place.q_W);
   tip_was_ = tip;
   offset_was_ = now_.tip_offset;
+  before_ = trend_.travel;
   increment_from_ = tissue.before();
   if (first) return;
   std::ranges::copy(tissue.positions(), surface_was_.begin());
@@ -413,29 +420,58 @@ void ToolContact::start_increment(bool first, const ToolTissue& tissue) {
 
 void ToolContact::note_trend(const ContactForce& contact, const ToolTissue& tissue) noexcept {
   if (!has_friction() || way_.again) return;
-  trend_.surface.clear();
+  trend_.travel.surface.clear();
   trend_.forces.clear();
   if (contact.contacts == 0) return;
-  trend_.way = now_.place.p_W + offset_was_ - tip_was_.p_W;
-  trend_.offset = now_.tip_offset - offset_was_;
+  trend_.travel.way = now_.place.p_W + offset_was_ - tip_was_.p_W;
+  trend_.travel.offset = now_.tip_offset - offset_was_;
+  trend_.travel.turn = now_.place.q_W * tip_was_.q_W.conjugate();
   for (const int vertex : finder_.vertices())
-    trend_.surface.push_back({vertex, tissue.positions()[vertex] - increment_from_[vertex]});
+    trend_.travel.surface.push_back({vertex, tissue.positions()[vertex] - increment_from_[vertex]});
   const auto forces = solver_.feature_forces();
   trend_.forces.assign(forces.begin(), forces.end());
+}
+
+/// Returns how far the tool goes on in this increment in the direction of an increment before, of that way.
+double ToolContact::share_of(const Travel& travel) const noexcept {
+  if (travel.surface.empty() || travel.way.isZero(0)) return 0;
+  const Vec3 way = now_.place.p_W + offset_was_ - tip_was_.p_W;
+  return std::clamp(way.dot(travel.way) / travel.way.squaredNorm(), 0.0, kLongerIncrement);
+}
+
+double ToolContact::slip_lead() const noexcept {
+  const double share = share_of(before_);
+  return share * share / (1 + 2 * share);
+}
+
+bool ToolContact::has_way() const noexcept {
+  return now_.place.p_W + offset_was_ != tip_was_.p_W || !before_.way.isZero(0);
+}
+
+ToolPose ToolContact::slip_start(double lead) const noexcept {
+  if (lead == 0) return tip_was_;
+  return {tip_was_.p_W + lead * (before_.way + before_.offset),
+          Quat::Identity().slerp(lead, before_.turn) * tip_was_.q_W};
+}
+
+Vec3 ToolContact::surface_lead(int vertex, double lead) const noexcept {
+  const auto moved = std::ranges::find(before_.surface, vertex, &Travel::Moved::vertex);
+  return moved == before_.surface.end() ? Vec3(Vec3::Zero()) : Vec3(lead * moved->by);
 }
 
 /// Adds to the displacement to look from what the surface did in the increment before, by as much as the tool
 /// goes on in its direction. Returns how far things may be from there, of the tool radius.
 double ToolContact::follow_trend(Eigen::Ref<Eigen::VectorXd> u) noexcept {
-  if (trend_.surface.empty() || way_.again || trend_.way.isZero(0)) return 1;
+  const Travel& travel = trend_.travel;
+  if (travel.surface.empty() || way_.again || travel.way.isZero(0)) return 1;
   const Vec3 way = now_.place.p_W + offset_was_ - tip_was_.p_W;
-  const double share = std::clamp(way.dot(trend_.way) / trend_.way.squaredNorm(), 0.0, 2.0);
-  for (const Trend::Moved& moved : trend_.surface) {
+  const double share = share_of(travel);
+  for (const Travel::Moved& moved : travel.surface) {
     const auto at = std::ranges::find(filled_, moved.vertex);
     if (at != filled_.end()) u.segment<3>(3 * (at - filled_.begin())) += share * moved.by;
   }
-  u.tail<3>() += share * trend_.offset;
-  return kForeseen * (way - share * trend_.way).norm() / tool_.radius + kForeseen * way_.length;
+  u.tail<3>() += share * travel.offset;
+  return kForeseen * (way - share * travel.way).norm() / tool_.radius + kForeseen * way_.length;
 }
 
 /// Takes the compliance of the vertices in `filled_`: column by column where that is possible, as most are
@@ -470,11 +506,14 @@ ContactForce ToolContact::solve_contact(ToolTissue tissue) {
   const double expected = follow_trend(u);
   predict(u);
   nodes_were_.clear();
+  const double lead = slip_lead();
+  const ToolPose start = slip_start(lead);
   if (has_friction()) {
-    for (const int vertex : vertices) nodes_were_.push_back(increment_from_[vertex]);
+    for (const int vertex : vertices)
+      nodes_were_.push_back(increment_from_[vertex] + surface_lead(vertex, lead));
   }
   const ContactForce contact =
-      solver_.solve(patch_, tool_, now_.place, u, {nodes_were_, tip_was_.p_W, tip_was_.q_W, trend_.forces},
+      solver_.solve(patch_, tool_, now_.place, u, {nodes_were_, start.p_W, start.q_W, trend_.forces},
                     {.expected = expected});
   now_.tip_offset = u.tail<3>();
   tissue.drop_loads();
@@ -509,7 +548,7 @@ void ToolContact::predict(Eigen::Ref<Eigen::VectorXd> u) noexcept {
 void ToolContact::release(ToolTissue tissue) {
   now_.tip_offset.setZero();
   predictor_.changes.clear();
-  trend_.surface.clear();
+  trend_.travel.surface.clear();
   trend_.forces.clear();
   tissue.release();
 }

@@ -65,7 +65,7 @@ class ToolContact {
   /// Goes to `pose` on a straight line (with friction: as `path` says), turning evenly, in increments on
   /// which no point of its axis goes farther than half its radius, so that a fast tool does not jump through
   /// the surface; shorter ones with friction, which follows the path. Slip is measured from where the tissue
-  /// really was: at the end of the last step, then of each increment.
+  /// really was: at the end of the last step, then of each increment (`slip_lead`).
   void advance_to(const ToolPose& pose, const Bend& path, ToolTissue tissue);
   /// The organ has moved under it: the tool goes along by `motion` (m), so that it stands on the surface as
   /// before.
@@ -152,8 +152,18 @@ class ToolContact {
   const Vec3& place() const { return now_.place.p_W; }
   /// Where the tip is, less `place`, m.
   const Vec3& tip_offset() const { return now_.tip_offset; }
-  /// Returns where the tip was when the increment in hand began; only with friction.
-  const ToolPose& increment_start() const { return tip_was_; }
+  /// Returns by which share of what tool and surface did in the increment before the slip of the one in hand
+  /// is measured from ahead of its start; 0: from its start. With friction: then its direction is that at the
+  /// end of the increment to second order, not only its mean over it (backward differences, Curtiss and
+  /// Hirschfelder 1952, Proc. Natl. Acad. Sci. 38:235, of increments of any lengths). What sticks, or is at
+  /// rest, is not ahead of itself.
+  double slip_lead() const noexcept;
+  /// Returns true if it has gone anywhere in this increment or in the one before; only with friction.
+  bool has_way() const noexcept;
+  /// Returns where the tip was when the increment in hand began, ahead by `lead`; only with friction.
+  ToolPose slip_start(double lead) const noexcept;
+  /// Returns how far a surface vertex is ahead of where it was then, m; 0 where that is not known.
+  Vec3 surface_lead(int vertex, double lead) const noexcept;
   /// Returns where a surface vertex was then; without friction, of those at `now`.
   const Vec3& increment_start(int vertex, std::span<const Vec3> now) const {
     return increment_from_.empty() ? now[vertex] : increment_from_[vertex];
@@ -168,6 +178,17 @@ class ToolContact {
   std::size_t bytes() const;
 
  private:
+  /// Motion of tool and surface in an increment with friction.
+  struct Travel {
+    struct Moved {
+      int vertex;
+      Vec3 by;  // m
+    };
+    Vec3 way = Vec3::Zero(), offset = Vec3::Zero();  // m, of the place, and of the tip from it
+    Quat turn = Quat::Identity();
+    std::vector<Moved> surface;  // near the tool, in contact; else none
+  };
+
   static bool is_tame(const ToolPose& pose) noexcept;
   void move_to(const ToolPose& pose, ToolTissue tissue);
   void solve_grasp(const ToolPose& pose, ToolTissue tissue);
@@ -179,6 +200,7 @@ class ToolContact {
   void note_trend(const ContactForce& contact, const ToolTissue& tissue) noexcept;
   double follow_trend(Eigen::Ref<Eigen::VectorXd> u) noexcept;
   void start_increment(bool first, const ToolTissue& tissue);
+  double share_of(const Travel& travel) const noexcept;
   Vec3 place_at_entry(const ToolPose& pose, const Vec3& inside, double fraction,
                       const Vec3& entry) const noexcept;
   double surface_motion(ToolTissue tissue) const;
@@ -233,15 +255,10 @@ class ToolContact {
   };
   State now_, stored_;
   std::vector<VertexLoad> stored_loads_;
-  /// Motion of tool and surface in the last increment with friction, and its forces: the next looks from
-  /// there.
+  Travel before_;  // in the increment before the one in hand
+  /// The last increment with friction: the next looks from there.
   struct Trend {
-    struct Moved {
-      int vertex;
-      Vec3 by;  // m
-    };
-    Vec3 way = Vec3::Zero(), offset = Vec3::Zero();  // m, of the place, and of the tip from it
-    std::vector<Moved> surface;
+    Travel travel;
     std::vector<FeatureForce> forces;
   };
   Trend trend_, stored_trend_;
