@@ -440,7 +440,9 @@ double ToolContact::share_of(const Travel& travel) const noexcept {
 }
 
 double ToolContact::slip_lead() const noexcept {
-  const double share = share_of(before_);
+  // In steps: so it stays as it is while the end of the increment moves by little, as in the tangent.
+  constexpr double kSteps = 8;
+  const double share = std::round(kSteps * share_of(before_)) / kSteps;
   return share * share / (1 + 2 * share);
 }
 
