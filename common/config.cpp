@@ -90,6 +90,7 @@ Config::Config(std::shared_ptr<Node> node) : node_(std::move(node)) {}
 
 Config Config::read(const std::filesystem::path& file) {
   std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) fail("{}: is a folder; name a file in it", file.string());
   if (!std::filesystem::is_regular_file(file, ignored)) fail("{}: no such file", file.string());
   if (!std::ifstream(file)) fail("{}: cannot be read; check its permissions", file.string());
   try {

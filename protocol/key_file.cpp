@@ -29,6 +29,7 @@ void require_private(const std::filesystem::path& file) {
   if (::stat(file.c_str(), &status) != 0)
     fail("{}: cannot be read ({}); `sim_server keygen {}` makes a key", file.string(), std::strerror(errno),
          file.string());
+  if (!S_ISREG(status.st_mode)) fail("{}: is no file, but a folder, a pipe or a device", file.string());
   if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
     fail(
         "{}: others than its owner may read it (mode {:04o}); `chmod 600 {}`, and make a new key if they "
@@ -57,6 +58,8 @@ Key read_line(const std::string& line, const std::string& where) {
     fail("{}: expected \"{} NUMBER HEX\", with a number from 1 to 255", where, kWord);
   const auto bytes = from_hex(hex);
   if (!bytes) fail("{}: a key has 64 hexadecimal digits, this one has {} characters", where, hex.size());
+  if (std::ranges::count(*bytes, 0) == static_cast<std::ptrdiff_t>(bytes->size()))
+    fail("{}: this key is all zeros, which anybody guesses; `sim_server keygen FILE` draws one", where);
   return {static_cast<std::uint8_t>(number), *bytes};
 }
 

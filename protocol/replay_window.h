@@ -119,6 +119,9 @@ class NewestOnly {
     return true;
   }
 
+  /// Returns the number of the newest value, 0 before there is one.
+  std::uint64_t newest() const noexcept { return newest_; }
+
  private:
   static constexpr std::uint64_t kMaxDistance = 1 << 16;  // 131 s of ticks at 500 Hz
 

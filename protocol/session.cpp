@@ -241,9 +241,12 @@ ServerSessions::Outcome ServerSessions::receive(const Datagram& datagram, const 
   if (!found->window.accept(datagram.header.sequence, stats)) return {};
   if (telemetry != nullptr) return {.telemetry = telemetry};
   if (found->window.in_order()) found->endpoint = from;  // another one only with a key
-  if (!found->ticks.accept(tool_state->tick, datagram.header.sequence, found->window.in_order(), stats))
-    return {.asking = tool_state};  // the newest value wins
-  found->last_heard = now;
+  const bool newer =
+      found->ticks.accept(tool_state->tick, datagram.header.sequence, found->window.in_order(), stats);
+  // A client that waits for its first tick says the same over and over.
+  const bool again = found->window.in_order() && tool_state->tick == found->ticks.newest();
+  if (newer || again) found->last_heard = now;
+  if (!newer) return {.asking = tool_state};  // the newest value wins
   return {.tool_state = tool_state, .asking = tool_state};
 }
 

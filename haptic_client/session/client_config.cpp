@@ -91,6 +91,11 @@ Limiter::Settings ClientConfig::device_limits() const {
 
 ClientConfig read_client_config(const std::filesystem::path& file) {
   const Config config = Config::read(file);
+  if (config.has("mesh") || config.has("deformation"))
+    fail(
+        "{}: is a scene, for `sim_server run {}`; a client file of that scene is named in its [session] "
+        "clients",
+        file.string(), file.string());
   ClientConfig client;
   client.server = config.text("server", client.server);
   client.server_where = config.where("server");

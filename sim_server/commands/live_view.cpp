@@ -15,33 +15,28 @@ namespace {
 constexpr Time kFieldEach = std::chrono::milliseconds(100);   // at most: it copies all nodes
 constexpr Time kPictureEach = std::chrono::milliseconds(15);  // at most
 
-/// HTTP is not encrypted: a token that is sent to another machine can be read on its way.
-void require_near(const protocol::Endpoint& endpoint, bool insecure) {
+}  // namespace
+
+/// HTTP is not encrypted: what is sent to another machine can be read on its way.
+void require_near(const protocol::Endpoint& endpoint, bool insecure, const std::string& risk) {
   if (protocol::is_loopback(endpoint)) return;
   const std::string address = protocol::to_string(endpoint);
-  if (insecure) {
-    log::warning(
-        "--viewer: {} is not this machine, and the page is not encrypted: whoever reaches it can look on, "
-        "and "
-        "whoever reads along can take the token, and move the tool",
-        address);
-    return;
-  }
+  if (insecure)
+    return log::warning("--viewer: {} is not this machine, and the page is not encrypted: {}", address, risk);
   fail(
-      "--viewer: {} is not this machine, and the page is not encrypted, so whoever reads along could take "
-      "the "
-      "token, and move the tool; give the port alone, and on the other machine `ssh -L PORT:127.0.0.1:PORT "
-      "HOST` (--insecure goes without, on a network that you trust)",
-      address);
+      "--viewer: {} is not this machine, and the page is not encrypted: {}; give the port alone, and on the "
+      "other "
+      "machine `ssh -L PORT:127.0.0.1:PORT HOST` (--insecure goes without, on a network that you trust)",
+      address, risk);
 }
-
-}  // namespace
 
 std::optional<ViewRequest> view_request(const std::string& viewer, const ListenOptions& listen) {
   const auto address = read_viewer_address(viewer);
   if (!address) return {};
   require_free(*address);
-  require_near(address->endpoint, listen.insecure);
+  require_near(
+      address->endpoint, listen.insecure,
+      "whoever reaches it can look on, and whoever reads along can take the token, and move the tool");
   const auto run = protocol::random_value<protocol::Nonce>();
   return ViewRequest{*address, listen.key ? token_of(protocol::read_keys(*listen.key).back(), run)
                                           : hex_token(protocol::random_value<PageToken>())};

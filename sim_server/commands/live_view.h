@@ -20,6 +20,10 @@ struct ViewRequest {
 /// be sent in clear.
 std::optional<ViewRequest> view_request(const std::string& viewer, const ListenOptions& listen);
 
+/// Throws `Error` where a page would be served to other machines, unless that is `insecure` on purpose; then
+/// warns. `risk`: what whoever reaches or reads it can do.
+void require_near(const protocol::Endpoint& endpoint, bool insecure, const std::string& risk);
+
 /// The live page of a session: copies what a page is shown out of the simulation's thread, while a page is
 /// open, and lets who has the token pause it.
 class LiveView final : public LoopObserver {

@@ -183,6 +183,7 @@ int view_capture(const ViewOptions& options) {
   const auto address = read_viewer_address(options.viewer);
   if (!address) fail("--viewer: off would show nothing; give a port");
   require_free(*address);
+  require_near(address->endpoint, options.insecure, "whoever reaches it sees the recording");
   const CapturedForces forces = read_captured_forces(options.capture);
   SceneFacts facts;
   std::optional<Scene> scene;
@@ -232,6 +233,8 @@ Command view_command() {
                 {"--scene", "Scene file of that session: steps it again, so that the organ moves, too",
                  &options->scene},
                 viewer_option(options->viewer),
+                {"--insecure", "Let --viewer serve other machines, on a network that you trust",
+                 &options->insecure},
                 {"--seconds", "Stop after so many seconds (default: at Ctrl-C)", &options->seconds}},
                cache_options(options->cache, "--scene")}),
           .run = [options] {

@@ -12,6 +12,7 @@ struct ViewOptions {
   std::filesystem::path capture;
   std::optional<std::filesystem::path> scene;  ///< of that session; absent: tools and forces alone are shown
   std::string viewer = "8080";
+  bool insecure = false;          ///< other machines may see the page
   std::optional<double> seconds;  ///< stop after so long; absent: at Ctrl-C
   CacheOptions cache;
 };

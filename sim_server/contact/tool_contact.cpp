@@ -10,9 +10,12 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kIncrement = 0.5;  // of the tool radius: how far the tool goes between two contact solves
-// With friction, which follows the path: shorter, as many as a step has time for; and half as long in a step
-// that turns off the increment before, whose slip says nothing about it (the cosine of the angle).
-constexpr double kFrictionIncrement = 0.08, kFrictionIncrements = 16, kCorner = 0.5;
+// With friction, which follows the path: shorter, as many as a step has time for; and a part as long in a
+// step that turns off the increment before, whose slip says nothing about it (the cosine of the angle), and
+// where the tissue sticks to the tool (the slip, of the way): there each new contact sticks from where it
+// begins.
+constexpr double kFrictionIncrement = 0.08, kFrictionIncrements = 16, kCorner = 0.5, kSticks = 0.5;
+constexpr double kShorterInCorner = 2, kShorterInStick = 8;
 // Of the increment before: how long the next may be for the slip of both to count.
 constexpr double kLongerIncrement = 2;
 constexpr double kMaxJump = 0.1;        // of the tool radius: what the surface may move by at once
@@ -229,8 +232,11 @@ double ToolContact::increments_to(const ToolPose& pose) const noexcept {
   const double increments = std::clamp(std::ceil(motion / (kIncrement * tool_.radius)), 1.0, kMaxIncrements);
   if (!has_friction()) return increments;
   const Vec3 way = pose.p_W - now_.place.p_W, &before = trend_.travel.way;
-  const bool turns = trend_.travel.surface.empty() || way.dot(before) < kCorner * way.norm() * before.norm();
-  const double wanted = std::ceil((turns ? 2 : 1) * motion / (kFrictionIncrement * tool_.radius));
+  const bool turns = way.dot(before) < kCorner * way.norm() * before.norm();
+  const double shorter = sticks(trend_.travel) ? kShorterInStick
+                         : turns               ? kShorterInCorner
+                                               : 1,
+               wanted = std::ceil(shorter * motion / (kFrictionIncrement * tool_.radius));
   return std::max(increments, std::min(wanted, kFrictionIncrements));
 }
 
@@ -426,6 +432,13 @@ void ToolContact::note_trend(const ContactForce& contact, const ToolTissue& tiss
   trend_.travel.way = now_.place.p_W + offset_was_ - tip_was_.p_W;
   trend_.travel.offset = now_.tip_offset - offset_was_;
   trend_.travel.turn = now_.place.q_W * tip_was_.q_W.conjugate();
+  trend_.travel.carried.setZero();
+  double pressed = 0;
+  for (const VertexLoad& load : tissue.loads()) {
+    const Vec3 by = tissue.positions()[load.vertex] - increment_from_[load.vertex];
+    pressed += load.force.norm();
+    trend_.travel.carried += load.force.norm() / pressed * (by - trend_.travel.carried);
+  }
   for (const int vertex : finder_.vertices())
     trend_.travel.surface.push_back({vertex, tissue.positions()[vertex] - increment_from_[vertex]});
   const auto forces = solver_.feature_forces();
@@ -439,7 +452,13 @@ double ToolContact::share_of(const Travel& travel) const noexcept {
   return std::clamp(way.dot(travel.way) / travel.way.squaredNorm(), 0.0, kLongerIncrement);
 }
 
+/// True if the tissue under the tool went along with it, or it touched nothing and may stick where it comes.
+bool ToolContact::sticks(const Travel& travel) noexcept {
+  return travel.surface.empty() || (travel.way - travel.carried).norm() < kSticks * travel.way.norm();
+}
+
 double ToolContact::slip_lead() const noexcept {
+  if (sticks(before_)) return 0;  // what only came into contact meanwhile has not slipped
   // In steps: so it stays as it is while the end of the increment moves by little, as in the tangent.
   constexpr double kSteps = 8;
   const double share = std::round(kSteps * share_of(before_)) / kSteps;

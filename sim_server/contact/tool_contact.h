@@ -186,7 +186,8 @@ class ToolContact {
     };
     Vec3 way = Vec3::Zero(), offset = Vec3::Zero();  // m, of the place, and of the tip from it
     Quat turn = Quat::Identity();
-    std::vector<Moved> surface;  // near the tool, in contact; else none
+    Vec3 carried = Vec3::Zero();  // m, of the tissue under its load
+    std::vector<Moved> surface;   // near the tool, in contact; else none
   };
 
   static bool is_tame(const ToolPose& pose) noexcept;
@@ -201,6 +202,7 @@ class ToolContact {
   double follow_trend(Eigen::Ref<Eigen::VectorXd> u) noexcept;
   void start_increment(bool first, const ToolTissue& tissue);
   double share_of(const Travel& travel) const noexcept;
+  static bool sticks(const Travel& travel) noexcept;
   Vec3 place_at_entry(const ToolPose& pose, const Vec3& inside, double fraction,
                       const Vec3& entry) const noexcept;
   double surface_motion(ToolTissue tissue) const;

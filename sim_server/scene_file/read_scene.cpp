@@ -136,6 +136,14 @@ void warn_of_locking(const Scene& scene) {
 }
 
 /// Fat and brain have some hundred pascals, bone ten gigapascals.
+/// Soft tissue is about as dense as water, whatever else may be meant by a number.
+void warn_of_density(const Scene& scene) {
+  constexpr double kLeast = 100, kMost = 5000;  // kg/m3
+  if (!scene.material || (scene.material->density >= kLeast && scene.material->density <= kMost)) return;
+  log::warning("{}: `density` = {:g} kg/m3; soft tissue has about 1060 (1.06 g/cm3): is the unit right?",
+               scene.material_where, scene.material->density);
+}
+
 void warn_of_stiffness(const Scene& scene) {
   constexpr double kLeast = 100, kMost = 1e9;  // Pa
   if (!scene.material) return;
@@ -294,6 +302,10 @@ Scene read_scene(const std::filesystem::path& file, Purpose purpose) {
   scene.title = config.text("title", file.stem().string());
   read_rate(config, scene);
   const auto mesh = config.table("mesh");
+  if (!mesh &&
+      (config.has("device") || config.has("operator") || config.has("trajectory") || config.has("server")))
+    fail("{}: is a client file, for `haptic_client run`; a scene has [mesh] and [deformation]",
+         config.where());
   if (!mesh) fail("{}: missing section [mesh] with `file`", config.where());
   read_mesh_section(*mesh, scene);
   for (const Config& fixed : config.tables("fixed")) scene.fixed.push_back(read_fixed(fixed));
@@ -312,6 +324,7 @@ Scene read_scene(const std::filesystem::path& file, Purpose purpose) {
   config.reject_unknown();
   reach_what_moves(scene);
   warn_of_locking(scene);
+  warn_of_density(scene);
   warn_of_stiffness(scene);
   return scene;
 }

@@ -12,7 +12,6 @@ namespace {
 std::string_view advice(ElasticLaw law) {
   switch (law) {
     case ElasticLaw::kLinear:
-      return "law \"neo_hookean\" (model \"implicit\") follows farther, and so does a blunter tip";
     case ElasticLaw::kCorotational:
     case ElasticLaw::kStVenantKirchhoff:
       return "law \"neo_hookean\" follows farther, and so does a blunter tip";
