@@ -1,24 +1,48 @@
 #include "common/overwrite.h"
 
 #include "common/error.h"
+#include "common/log.h"
 
 namespace palpate {
+namespace {
 
-Option force_option(bool& force) {
-  return {"--force", "Overwrite captures and CSV files that are there already", &force};
+/// A name that no file has.
+std::filesystem::path free_name(const std::filesystem::path& file) {
+  for (int number = 1;; ++number) {
+    const std::filesystem::path name = fmt::format("{}.~{}~", file.string(), number);
+    std::error_code none;
+    if (!std::filesystem::exists(std::filesystem::symlink_status(name, none))) return name;
+  }
 }
 
-void require_new(const std::vector<NamedFile>& files, bool force) {
+bool holds_something(const std::filesystem::path& file) {
+  std::error_code none;
+  const std::string place = std::filesystem::absolute(file, none).lexically_normal().string();
+  const bool of_the_system = place.starts_with("/dev/") || place.starts_with("/proc/");
+  return !of_the_system && std::filesystem::is_regular_file(file, none) &&
+         std::filesystem::file_size(file, none) > 0;
+}
+
+}  // namespace
+
+Option force_option(bool& force) {
+  return {"--force", "Overwrite captures and CSV files that are there; else they are kept as FILE.~1~ ...",
+          &force};
+}
+
+void set_aside(const std::vector<NamedFile>& files, bool force) {
   if (force) return;
   for (const NamedFile& named : files) {
-    if (!named.file) continue;
-    std::error_code none;
-    const std::string place = std::filesystem::absolute(*named.file, none).lexically_normal().string();
-    const bool of_the_system = place.starts_with("/dev/") || place.starts_with("/proc/");
-    if (of_the_system || !std::filesystem::is_regular_file(*named.file, none)) continue;
-    if (std::filesystem::file_size(*named.file, none) > 0)
-      fail("{}: {} is there already; `--force` overwrites it, another name keeps it", named.option,
-           named.file->string());
+    if (!named.file || !holds_something(*named.file)) continue;
+    const std::filesystem::path kept = free_name(*named.file);
+    std::error_code failed;
+    std::filesystem::rename(*named.file, kept, failed);
+    if (failed) {
+      fail_at_run_time("{}: {} is there, and cannot be kept as {} ({}); `--force` overwrites it",
+                       named.option, named.file->string(), kept.string(), failed.message());
+    }
+    log::info("{}: what was there is kept as {} (`--force` overwrites it)", named.file->string(),
+              kept.string());
   }
 }
 

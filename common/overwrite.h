@@ -9,8 +9,9 @@ namespace palpate {
 /// Option "--force" of a command that writes captures or tables.
 Option force_option(bool& force);
 
-/// Throws `Error` (input) where one of these captures or tables is there already and holds something, so that
-/// it would be lost; not with `force`. Devices and pipes are nothing to lose.
-void require_new(const std::vector<NamedFile>& files, bool force);
+/// Keeps these captures or tables, where they are there already and hold something, under another name,
+/// F.~1~, F.~2~ ..., and says so; not with `force`. Devices and pipes are nothing to lose. Throws `Error`
+/// where a file cannot be renamed.
+void set_aside(const std::vector<NamedFile>& files, bool force);
 
 }  // namespace palpate

@@ -65,8 +65,6 @@ void require_distinct_files(const RecordOptions& options, const Scene& scene) {
 void check_record_files(const RecordOptions& options, const Scene& scene) {
   require_distinct_files(options, scene);
   if (options.report) check_writable(*options.report, Contents::kReport);
-  require_new({{"--out", options.out}, {"--resection", options.resection}, {"--removals", options.removals}},
-              options.force);
   require_resection("--resection", options.resection, scene);
   require_resection("--removals", options.removals, scene);
   if (!scene.cutting) require_resection("--remove", options.remove, scene);
@@ -226,6 +224,8 @@ int record(const RecordOptions& options) {
                          &errors);
   const Time start = now();
   run_session(session, ticks, capture, options, progress);
+  set_aside({{"--out", options.out}, {"--resection", options.resection}, {"--removals", options.removals}},
+            options.force);
   out.commit();
   const double took = to_seconds(now() - start), virtual_s = to_seconds(session.time_of(ticks - 1));
   print_recording(options, session.stats(), capture, simulation, virtual_s, took);
