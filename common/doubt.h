@@ -16,7 +16,7 @@ enum class Doubt : std::uint8_t {
   kOutsideReach
 };
 
-/// In the words of messages, after "the force is not settled: ".
+/// Reasons in the words of messages, after "the force is not settled: ".
 inline constexpr std::array<std::string_view, 7> kDoubtTexts{
     "a step of the simulation failed",
     "the organ ran away",

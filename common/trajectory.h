@@ -30,7 +30,7 @@ class Trajectory {
   void log_source() const;
 
  private:
-  /// Where a time lies between two rows: `fraction` of the way from `row` to the next.
+  /// Place of a time between two rows: `fraction` of the way from `row` to the next.
   struct Between {
     std::size_t row;
     double fraction;

@@ -13,7 +13,7 @@ namespace palpate::sim {
 namespace {
 
 constexpr double kBalanced = 0.01;  // relative residual of the last iteration of a step that counts as solved
-constexpr int kMoreIterations = 2;  // times `max_newton`, where the residual does not count as solved by then
+constexpr int kMoreIterations = 3;  // times `max_newton`, where the residual does not count as solved by then
 constexpr double kMostColumnBytes = 1e9;  // of columns, when a step begins
 
 /// A body that nothing holds flies.

@@ -44,15 +44,15 @@ DynamicsSettings dynamics_settings(const DeformationSettings& settings);
 /// there, and answers the contact solver from that: compliance W = J A^-1 J^T, dt^2 of the mass-like matrix
 /// in it, which is also that over the sample interval, as loads are held over the step. Then it iterates
 /// again from where contact led, until Newton's method has converged with contact inside its loop, at most
-/// `max_newton` times. Where more than 1 % of the forces are unbalanced then, it iterates as many times
-/// again; what is not balanced by then is flagged and its answer held, and a body whose factors come from the
-/// background takes the next one as soon as it is ready. The factor of A is kept over steps as long as it
-/// serves (where the body rests, none is older than its shape), or made in the background and exchanged every
-/// `refresh_steps`: that takes more iterations, but they converge to the balance of the true forces. Columns
-/// of W are solved for as they are asked for, and kept while the factor stands: for a linear law from then
-/// on; with a factor of the background come those that were asked for while it was made. Moving supports
-/// stand at the end of a step where they shall be then; the run begins with the body in equilibrium, at the
-/// velocities that it will have by them.
+/// `max_newton` times. Where more than 1 % of the forces are unbalanced then, it iterates twice as
+/// many times again; what is not balanced by then is flagged and its answer held, and a body whose factors
+/// come from the background takes the next one as soon as it is ready. The factor of A is kept over steps as
+/// long as it serves (where the body rests, none is older than its shape), or made in the background and
+/// exchanged every `refresh_steps`: that takes more iterations, but they converge to the balance of the true
+/// forces. Columns of W are solved for as they are asked for, and kept while the factor stands: for a linear
+/// law from then on; with a factor of the background come those that were asked for while it was made. Moving
+/// supports stand at the end of a step where they shall be then; the run begins with the body in equilibrium,
+/// at the velocities that it will have by them.
 class Implicit final : public DeformationModel,
                        public NonlinearModel,
                        public CuttableModel,
