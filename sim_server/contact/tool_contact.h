@@ -17,11 +17,11 @@ struct ToolForce {
   int iterations = 0;  ///< contact linearisations, all sub-places together
   /// No settled answer: a wild position (then there is no force), contact that did not converge, several
   /// tools without a common equilibrium (then all stay, with their forces, where they were), tissue
-  /// that found no balance or closed over the tool, a motion too long for one step (then the force belongs to
-  /// the place the tool got to), or an organ that ran away: some of its surface at no finite place, or,
-  /// though held, three times its size from rest (then the force is half that of the step before), contact
-  /// given up because the surface was dragged too far from its free place, or a model that threw (then the
-  /// force is that of the step before).
+  /// that closed over the tool, a motion too long for one step (then the force belongs to the place the tool
+  /// got to), or an organ that ran away: some of its surface at no finite place, or, though held, three times
+  /// its size from rest (then the force is half that of the step before), contact given up because the
+  /// surface was dragged too far from its free place, or tissue that found no balance, or a model that threw
+  /// (then the force is that of the step before).
   bool flagged = false;
 };
 

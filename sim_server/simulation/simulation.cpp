@@ -72,12 +72,18 @@ std::size_t make_room_for_loads(const ToolGroup& tools, Tissue& tissue) {
   return static_cast<std::size_t>(std::accumulate(most_loads.begin(), most_loads.end(), 0));
 }
 
+/// Holds the last force: what a tool presses with on tissue that found no balance may be anything.
+void hold(ToolAnswer& answer) noexcept {
+  answer.tangent.setZero();
+  answer.mean_force = answer.force;
+  answer.flagged = true;
+}
+
 /// Halves the last force each step once the solution is lost.
-void fade(ToolForce& force) noexcept {
-  force.force *= 0.5;
-  force.torque *= 0.5;
-  force.tangent.setZero();
-  force.flagged = true;
+void fade(ToolAnswer& answer) noexcept {
+  answer.force *= 0.5;
+  answer.torque *= 0.5;
+  hold(answer);
 }
 
 /// Supports that carry tissue and tool along make neither slip on the other; what the tissue does besides, as
@@ -209,12 +215,12 @@ void Simulation::explain_flagged() noexcept {
 /// Holds the answers after a step that threw. The forces of a tissue that answers no more fade.
 void Simulation::hold_answers(std::span<const ToolInput> inputs) noexcept {
   for (std::size_t i = 0; i < state_.answers.size(); ++i) {
-    ToolForce held = inputs[i].pose ? state_.answers[i] : ToolForce{};
+    ToolAnswer held;
+    if (inputs[i].pose) static_cast<ToolForce&>(held) = state_.answers[i];
     if (state_.failed) fade(held);
-    held.tangent.setZero();
+    hold(held);
     held.flagged = inputs[i].pose.has_value();
-    state_.answers[i] = {};
-    static_cast<ToolForce&>(state_.answers[i]) = held;
+    state_.answers[i] = held;
   }
   state_.failed = true;
 }
@@ -252,6 +258,7 @@ void Simulation::answer(std::size_t tool, const ToolInput& input, double dt) {
   if (instants() > 1)
     contact.predict_tangent(std::max(dt, input.request.ahead ? input.request.ahead->seconds : 0));
   const bool publishes_tangents = tissue_.traits.publishes_tangents;
+  if (contact.force().flagged && !balanced()) return hold(answer);
   if (input.request.tangent && publishes_tangents) tools_.differentiate(tool, tissue_);
   static_cast<ToolForce&>(answer) = contact.force();
   if (!publishes_tangents) answer.force = state_.means[tool].late;

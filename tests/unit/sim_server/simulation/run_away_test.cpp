@@ -1,5 +1,6 @@
 // Bodies flung out of shape, and tools that come too fast: they come back, or say that they do not.
 #include "sim_server/models/deformation_models.h"
+#include "sim_server/models/implicit.h"
 #include "sim_server/simulation/simulation.h"
 #include "sim_server/solvers/dynamics.h"
 #include "tests/support/catch.h"
@@ -137,4 +138,28 @@ TEST_CASE("run away: what was felt before an organ ran away fades, and does not 
   }
   test::lift_tools(simulation);
   CHECK(simulation.step(ToolPose(far), kDt).force.isZero(0));
+}
+
+TEST_CASE(
+    "run away: of tissue without a balance the hand gets the force before, flagged, without a tangent") {
+  Scene scene = soft_block_scene(0.015, "implicit", ElasticLaw::kNeoHookean, kRadius);
+  scene.deformation.of<ImplicitSettings>().max_newton = 1;
+  Simulation simulation(scene, thick_block());
+  ToolAnswer before;
+  int unbalanced = 0;
+  for (int i = 0; i < 40; ++i) {  // from one side to the other, 1 to 5 mm deep
+    const Vec3 place(i % 2 == 0 ? -0.006 : 0.006, kRadius - 0.001 * (1 + i % 5), 0.002);
+    const ToolAnswer answer = step(simulation, place, {}, kDt);
+    if (!simulation.balanced() && answer.contacts > 0) {
+      ++unbalanced;
+      CHECK(answer.flagged);
+      CHECK(answer.doubt == Doubt::kNotBalanced);
+      CHECK((answer.force - before.force).norm() == 0);
+      CHECK((answer.mean_force - before.force).norm() == 0);
+      CHECK(answer.tangent.norm() == 0);
+    }
+    before = answer;
+  }
+  CHECK(unbalanced > 3);
+  CHECK(unbalanced < 40);
 }
