@@ -173,11 +173,12 @@ int replay(const ClientConfig& config, const ReplayOptions& options) {
 
   Pipeline pipeline(find_row(extrapolators(), config.method, "method", config.method_where).make(),
                     config.workspace, config.device_limits(), config.passivity, config.blend);
-  const std::size_t keep = options.out ? Scoring::longest_wait(ticks_hz) + 1 : 0;
-  Observation observation(config.scored_laws(), ticks_hz, config.score_where, keep, config.blend);
+  const std::size_t keep = options.out ? PastTicks::longest_wait(ticks_hz) + 1 : 0;
+  Observation observation(config.scored_laws(), ticks_hz, config.score_where, config.workspace, keep,
+                          config.blend);
   CapturedSession session(options.capture, chosen.index);
   std::optional<TraceWriter> trace;
-  if (options.out) trace.emplace(*options.out, observation.scoring().names(), config.method);
+  if (options.out) trace.emplace(*options.out, observation.scoring().names());
   const std::uint64_t ticks = run_ticks(session, exact ? std::nullopt : std::optional(rate_hz), pipeline,
                                         observation, trace ? &*trace : nullptr);
   if (trace) trace->finish();

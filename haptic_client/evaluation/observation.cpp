@@ -17,8 +17,18 @@ SessionCell& SessionCell::operator+=(const SessionCell& other) noexcept {
 }
 
 Observation::Observation(const std::vector<std::string>& laws, double rate_hz, const std::string& where,
-                         std::size_t keep, double blend, const Truth* truth)
-    : scoring_(laws, rate_hz, where, blend, truth), ring_(keep) {}
+                         const Workspace& workspace, std::size_t keep, double blend)
+    : scoring_(laws, rate_hz, where, blend), workspace_(workspace), ring_(keep) {}
+
+/// None while nobody holds the tool: the device is lost, the clutch held, or the simulation paused.
+std::optional<RenderedForce> Observation::rendered_force(const TickResult& result) const noexcept {
+  using protocol::ToolState;
+  constexpr auto kNobody = ToolState::kDeviceLost | ToolState::kClutched | ToolState::kInPause;
+  if ((result.tool.flags & kNobody) != 0) return {};
+  return RenderedForce{.law = result.law_W,
+                       .faded = result.gain * result.law_W,
+                       .written = workspace_.force_to_world(result.f_D)};
+}
 
 void Observation::tick(const TickResult& result, Time took, std::uint64_t missed) noexcept {
   const Time t{result.tool.t_ns};
@@ -35,13 +45,16 @@ void Observation::tick(const TickResult& result, Time took, std::uint64_t missed
     cell.step_ns_max = std::max(cell.step_ns_max, step_ns);
     if (result.errors) published_errors_.add(*result.errors, result.sample.f.norm());
   }
-  scoring_.tick(result.tool.p_W, t, result.used ? &result.sample : nullptr, cell.errors);
+  const std::optional<RenderedForce> rendered = rendered_force(result);
+  scoring_.tick(result.tool.p_W, t, result.used ? &result.sample : nullptr, cell.errors, rendered);
   if (ring_.empty()) return;
   for (const Scoring::ScoredTick& scored : scoring_.newly_scored()) {
     if (recorded_ - scored.number <= ring_.size())
       ring_[scored.number % ring_.size()].reference = scored.reference;
   }
-  ring_[recorded_++ % ring_.size()] = {result, scoring_.forces()};
+  TickRecord& record = ring_[recorded_++ % ring_.size()];
+  record = {result, scoring_.forces()};
+  if (rendered) record.written_W = rendered->written;
 }
 
 const TickRecord* Observation::leaving() const noexcept {

@@ -1,8 +1,9 @@
 #pragma once
 #include <vector>
 
+#include "common/error_mean.h"
 #include "common/timeline.h"
-#include "haptic_client/evaluation/published_errors.h"
+#include "common/workspace.h"
 #include "haptic_client/evaluation/scoring.h"
 #include "haptic_client/pipeline/pipeline.h"
 
@@ -12,7 +13,8 @@ namespace palpate::client {
 struct TickRecord {
   TickResult result;
   std::array<Vec3, kMaxLaws> laws;     ///< N, world
-  std::optional<Vec3> reference = {};  ///< what they were held against, N, world; known some samples later
+  std::optional<Vec3> written_W = {};  ///< N, world, on the hand that holds the tool, if one does
+  std::optional<Vec3> reference = {};  ///< what was right, N, world; known some samples later
 };
 
 /// Cell of the time line of a session.
@@ -28,25 +30,29 @@ using SessionTimeline = Timeline<SessionCell>;
 /// at construction only. Haptic thread, after the force was written.
 class Observation {
  public:
-  /// `laws`, `where`: see `Scoring`. `keep`: how many of the last ticks to keep (0: none; 3.2 kB each).
+  /// `laws`, `where`: see `Scoring`. `workspace`: of the device. `keep`: how many of the last ticks to keep
+  /// (0: none; 3.2 kB each).
   Observation(const std::vector<std::string>& laws, double rate_hz, const std::string& where,
-              std::size_t keep, double blend = 0, const Truth* truth = nullptr);
+              const Workspace& workspace, std::size_t keep, double blend = 0);
 
   /// Adds one tick with its `result`; it took `took`, and `missed` deadlines were skipped before it.
   void tick(const TickResult& result, Time took, std::uint64_t missed) noexcept;
 
   const Scoring& scoring() const noexcept { return scoring_; }
   const SessionTimeline& timeline() const noexcept { return timeline_; }
-  const PublishedErrors& published_errors() const noexcept { return published_errors_; }
+  const ErrorMeans& published_errors() const noexcept { return published_errors_; }
   /// The tick that goes with the next one, as there is no room for more; null: there is.
   const TickRecord* leaving() const noexcept;
   /// The kept ticks, oldest first.
   std::vector<TickRecord> record() const;
 
  private:
+  std::optional<RenderedForce> rendered_force(const TickResult& result) const noexcept;
+
   Scoring scoring_;
+  Workspace workspace_;
   SessionTimeline timeline_;
-  PublishedErrors published_errors_;
+  ErrorMeans published_errors_;
   std::vector<TickRecord> ring_;
   std::uint64_t recorded_ = 0;
 };

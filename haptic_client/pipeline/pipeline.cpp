@@ -135,7 +135,9 @@ TickResult Pipeline::render(const ToolState& tool, const ForceSample* arrived,
     passivity_.moved(now, workspace_.motion_to_device(tool.p_W - rendered_.p_W),
                      workspace_.motion_to_device(organ ? surface_v : Vec3(Vec3::Zero())), dt);
   }
-  result.f_D = safe(estimate_.force(tool.p_W, now), tool, dt);
+  result.law_W = estimate_.force(tool.p_W, now);
+  result.f_D = safe(result.law_W, tool, dt);
+  result.gain = watchdog_.gain();
   if (result.tool.newest_sample > 0) {
     if (stats_.published == 0) stats_.first_published = now;
     if (!estimate_.stepped_down() && stats_.first_itself == Time{}) stats_.first_itself = now;

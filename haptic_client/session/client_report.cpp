@@ -360,7 +360,7 @@ Json tool_report(const ClientConfig& config, const Pipeline& pipeline, const Obs
   const LimiterCounts& limiter = pipeline.limiter().counts();
   const auto pairs = static_cast<double>(stats.sample_pairs);
   Json rendered = at_work_report(config.method, stats.substitutes, stats.published);
-  rendered.update(error_budget_report(config.method, observation));
+  rendered.update(whole_error_report(observation));
   Json force = {{"samples", stats.samples},
                 {"overtaken", stats.overtaken},
                 {"flagged", stats.flagged},
@@ -426,10 +426,10 @@ Json link_report(const NetLink& link) {
 void print_report(const Json& report) {
   for (const Json& tool : report["tools"]) {
     fmt::print("haptic_client: {}, rendered: {}\n", tool["device"].get<std::string>(), rendered_text(tool));
+    print_whole_error(tool);
     if (tool.contains("loop")) print_loop(tool["loop"]);
     print_tool(tool);
     print_scores(tool);
-    print_error_budget(tool);
     print_drift(tool);
     if (tool.contains("link")) print_link(tool["link"]);
     if (tool.contains("recording")) {

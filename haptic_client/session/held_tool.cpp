@@ -42,7 +42,7 @@ HeldTool::HeldTool(const ClientConfig& config, const ToolFiles& files, std::stri
       device_(device ? std::move(device) : row_of(config.device).make(config.device)),
       pipeline_(find_row(extrapolators(), config.method, "method", config.method_where).make(),
                 config.workspace, config.device_limits(), config.passivity, config.blend),
-      observation_(config.scored_laws(), rate_of(config), config.score_where,
+      observation_(config.scored_laws(), rate_of(config), config.score_where, config.workspace,
                    stored_ticks(config, files, seconds), config.blend),
       telemetry_(config.device.name, row_of(config.device).make_safe != nullptr, config.method,
                  rate_of(config)),
@@ -195,7 +195,7 @@ Json HeldTool::report() const {
 
 void HeldTool::write_files() const {
   if (!files_.trace) return;
-  TraceWriter trace(*files_.trace, observation_.scoring().names(), config_.method);
+  TraceWriter trace(*files_.trace, observation_.scoring().names());
   for (const TickRecord& tick : observation_.record()) trace.add(tick);
   trace.finish();
 }

@@ -11,16 +11,14 @@ namespace {
 constexpr std::size_t kFlushAt = 1 << 16;  // bytes
 }
 
-TraceWriter::TraceWriter(const std::filesystem::path& file, const std::vector<std::string>& laws,
-                         const std::string& rendered)
+TraceWriter::TraceWriter(const std::filesystem::path& file, const std::vector<std::string>& laws)
     : name_(file),
       file_(file, Contents::kTable),
       out_(file_.path(), std::ios::binary),
-      laws_(laws.size()),
-      rendered_(static_cast<std::size_t>(std::ranges::find(laws, rendered) - laws.begin())) {
+      laws_(laws.size()) {
   text_ =
       "tick,t_s,px_m,py_m,pz_m,fx_n,fy_n,fz_n,sample,sample_t_s,sample_n,flagged,mesh_percent,motion_percent,"
-      "reference_n,extrapolation_n";
+      "reference_n,extrapolation_n,error_n";
   for (const std::string& law : laws) text_ += fmt::format(",{}_n", law);
   text_ += '\n';
 }
@@ -42,7 +40,7 @@ void TraceWriter::add(const TickRecord& tick) {
   const DiscretisationErrors errors = result.errors.value_or(DiscretisationErrors{});
   add_error(errors.mesh);
   add_error(errors.time_step);
-  add_extrapolation(tick);
+  add_errors(tick);
   for (std::size_t i = 0; i < laws_; ++i) fmt::format_to(out, ",{}", tick.laws[i].norm());
   text_ += '\n';
   if (text_.size() >= kFlushAt) flush();
@@ -54,14 +52,17 @@ void TraceWriter::add_error(const DiscretisationError& error) {
   if (error.known()) fmt::format_to(std::back_inserter(text_), "{}", error.percent);
 }
 
-/// The reference force, and the error of the rendered law; empty where nobody could know.
-void TraceWriter::add_extrapolation(const TickRecord& tick) {
+/// The reference force, the error of the rendered law, and that of the force on the hand; empty where nobody
+/// could know.
+void TraceWriter::add_errors(const TickRecord& tick) {
   const auto out = std::back_inserter(text_);
   text_ += ',';
   if (tick.reference) fmt::format_to(out, "{}", tick.reference->norm());
   text_ += ',';
-  if (tick.reference && rendered_ < laws_)
-    fmt::format_to(out, "{}", (tick.laws[rendered_] - *tick.reference).norm());
+  if (tick.reference) fmt::format_to(out, "{}", (tick.result.law_W - *tick.reference).norm());
+  text_ += ',';
+  if (tick.reference && tick.written_W)
+    fmt::format_to(out, "{}", (*tick.written_W - *tick.reference).norm());
 }
 
 void TraceWriter::flush() {

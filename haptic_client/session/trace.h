@@ -14,24 +14,22 @@ namespace palpate::client {
 /// so that reading them gives the same bits back: equal files mean equal forces. Not for a running loop.
 class TraceWriter {
  public:
-  /// `laws`: names of the scored laws, a column each. `rendered`: the one of them whose error has a column;
-  /// one that is not scored has none to tell. Throws `Error`.
-  TraceWriter(const std::filesystem::path& file, const std::vector<std::string>& laws,
-              const std::string& rendered);
+  /// `laws`: names of the scored laws, a column each. Throws `Error`.
+  TraceWriter(const std::filesystem::path& file, const std::vector<std::string>& laws);
   void add(const TickRecord& tick);
   /// The file appears. Throws `Error` when it could not be written.
   void finish();
 
  private:
   void add_error(const DiscretisationError& error);
-  void add_extrapolation(const TickRecord& tick);
+  void add_errors(const TickRecord& tick);
   void flush();
 
   std::filesystem::path name_;
   AtomicFile file_;
   std::ofstream out_;
   std::string text_;
-  std::size_t laws_, rendered_;
+  std::size_t laws_;
   std::optional<Time> start_;
 };
 

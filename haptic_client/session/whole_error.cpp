@@ -1,6 +1,5 @@
 #include "haptic_client/session/whole_error.h"
 
-#include <algorithm>
 #include <cmath>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -32,42 +31,91 @@ std::string how_of(const DiscretisationError& error) {
 
 }  // namespace
 
-Json error_budget_report(const std::string& method, const Observation& observation) {
+Json whole_error_report(const Observation& observation) {
   const DiscretisationErrors published = observation.published_errors().mean();
   const Scoring& scoring = observation.scoring();
+  const bool judged = scoring.rendered().judged() > 0;
   Json report = {{"mesh_percent", percent_of(published.mesh)},
                  {"motion_percent", percent_of(published.time_step)},
-                 {"extrapolation_percent", nullptr},
+                 {"judged_ticks", scoring.rendered().judged()},
+                 {"unjudged_ticks", scoring.unjudged()},
                  {"how",
                   {{"mesh", published.mesh.source == ErrorSource::kNone ? "none: this tissue has no mesh"
                                                                         : how_of(published.mesh)},
                    {"motion", how_of(published.time_step)},
-                   {"extrapolation", "unknown: nothing was rendered between two samples"}}}};
-  const auto row = std::ranges::find(scoring.names(), method);
-  if (row == scoring.names().end() || scoring.scored() == 0) return report;
-  const auto at = static_cast<std::size_t>(row - scoring.names().begin());
-  const double percent = scoring.metrics(at).mean_percent;
-  if (std::isnan(percent)) return report;
-  report["extrapolation_percent"] = percent;
-  report["how"]["extrapolation"] =
-      fmt::format("measured here, latency included, against the force between samples ({})",
-                  name_of(scoring.mostly_between()));
+                   {"extrapolation",
+                    judged ? fmt::format("measured here, latency included, against the force between samples "
+                                         "({})",
+                                         name_of(scoring.mostly_between()))
+                           : "unknown: nothing was rendered between two samples"}}}};
+  const RenderedErrorParts parts = scoring.rendered().parts();
+  const bool touched = judged && !std::isnan(parts.hand.mean_percent);
+  const auto known = [&](double percent) { return touched ? Json(percent) : Json(); };
+  report["hand_percent"] = known(parts.hand.mean_percent);
+  report["hand_p99_percent"] = known(parts.hand.p99_of_rms_percent);
+  report["hand_max_percent"] = known(parts.hand.max_of_rms_percent);
+  report["extrapolation_percent"] = known(parts.extrapolation_percent);
+  report["outages_percent"] = known(parts.outages_percent);
+  report["fades_percent"] = known(parts.fades_percent);
+  report["limits_percent"] = known(parts.limits_percent);
+  const bool all = touched && published.mesh.known() && published.time_step.known();
+  report["total_percent"] = all ? Json(parts.hand.mean_percent + static_cast<double>(published.mesh.percent) +
+                                       static_cast<double>(published.time_step.percent))
+                                : Json();
   return report;
 }
 
-void print_error_budget(const Json& tool) {
+namespace {
+
+/// "at most 5.9 %", or what is known of it.
+std::string total_text(const Json& rendered) {
+  if (!rendered["total_percent"].is_null())
+    return fmt::format("at most {} %", two_figures(rendered["total_percent"].get<double>()));
+  return fmt::format("{} %, and what mesh and time step add to it, which is not known",
+                     two_figures(rendered["hand_percent"].get<double>()));
+}
+
+/// What is known of the law of the tissue itself.
+std::string law_text(const Json& force) {
+  const auto strained = force["strained"].get<double>(), samples = force["samples"].get<double>();
+  return strained > 0 ? fmt::format("not known, and not in the sum: strained beyond what it is meant for in "
+                                    "{:.3g} % of the samples",
+                                    100 * strained / samples)
+                      : "not known, and not in the sum: how well it describes this organ";
+}
+
+}  // namespace
+
+void print_whole_error(const Json& tool) {
   const Json& rendered = tool["rendered"];
   if (rendered["laws"].empty()) return;
-  fmt::print(
-      "  error   of the force, % of its root mean square; the law of the tissue itself is not in it\n");
-  const auto row = [&](const char* name, const char* percent, const char* how) {
+  if (rendered["hand_percent"].is_null()) {
+    fmt::print("  error   of the force on the hand: not known, as nothing was touched\n");
+  } else {
+    fmt::print(
+        "  error   of the force on the hand: {} of its root mean square in the mean; at the worst tick {} %, "
+        "mesh and time step aside; a hand can tell about 10 %\n",
+        total_text(rendered), two_figures(rendered["hand_max_percent"].get<double>()));
+  }
+  const auto row = [&](const char* name, const char* percent, const std::string& how) {
     const std::string number =
         rendered[percent].is_null() ? "?" : two_figures(rendered[percent].get<double>());
-    fmt::print("          {:<14}{:>7}   {}\n", name, number, rendered["how"][how].get<std::string>());
+    fmt::print("          {:<14}{:>7}   {}\n", name, number, how);
   };
-  row("mesh", "mesh_percent", "mesh");
-  row("time step", "motion_percent", "motion");
-  row("extrapolation", "extrapolation_percent", "extrapolation");
+  const auto source = [&](const char* of) { return rendered["how"][of].get<std::string>(); };
+  row("mesh", "mesh_percent", source("mesh"));
+  row("time step", "motion_percent", source("motion"));
+  fmt::print("          {:<14}{:>7}   {}\n", "tissue's law", "?", law_text(tool["force"]));
+  row("extrapolation", "extrapolation_percent", source("extrapolation"));
+  row("outages", "outages_percent", "the law where no sample came for more than 300 ms");
+  row("fades", "fades_percent", "soft start, and fades of forces that were old or not settled");
+  row("limits", "limits_percent", "passivity, damping, largest force and slew");
+  const auto unjudged = rendered["unjudged_ticks"].get<double>(),
+             judged = rendered["judged_ticks"].get<double>();
+  if (unjudged > 0) {
+    fmt::print("          {:.3g} % of the ticks could not be judged: no sample came within 0.9 s\n",
+               100 * unjudged / (judged + unjudged));
+  }
 }
 
 }  // namespace palpate::client

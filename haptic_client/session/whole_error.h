@@ -4,11 +4,11 @@
 
 namespace palpate::client {
 
-/// `rendered.mesh_percent`, `.motion_percent`, `.extrapolation_percent` and `.how` of a tool that rendered
-/// `method`; null where nobody knows. Of extrapolation, what the row of `method` scored.
-Json error_budget_report(const std::string& method, const Observation& observation);
+/// Error of the force on the hand, from the organ's mesh to the motors: `rendered.total_percent` and its
+/// parts (session/REPORT.md); null where nobody knows.
+Json whole_error_report(const Observation& observation);
 
-/// Prints that report as a table, for people, on stdout; nothing before the first sample of a force.
-void print_error_budget(const Json& tool);
+/// Prints that report of a tool for people, on stdout, the total first; nothing before the first sample.
+void print_whole_error(const Json& tool);
 
 }  // namespace palpate::client

@@ -28,7 +28,7 @@ from session_report import Unusable, at_work, read_json, share_text
 
 WIDTH_PX, HEIGHT_PX, DPI = 1600, 1150, 100
 NEEDED = ("t_s", "fx_n", "fy_n", "fz_n", "sample_t_s", "sample_n")
-NOT_LAWS = ("fx_n", "fy_n", "fz_n", "sample_n", "reference_n", "extrapolation_n")
+NOT_LAWS = ("fx_n", "fy_n", "fz_n", "sample_n", "reference_n", "extrapolation_n", "error_n")
 BEFORE, AFTER = 0.03, 0.05    # s around the first contact
 LONGEST, SHORTEST = 2.0, 0.3  # s of it that are shown
 CLEAR_SHARE = 0.2             # of the largest force: that much is clearly a contact

@@ -147,7 +147,7 @@ void SimLoop::count(std::span<const ServedTools::Outcome> outcomes, Time start, 
     tool.contact_steps += force.contacts > 0 ? 1 : 0;
     tool.max_newton = std::max(tool.max_newton, newton);
     if (outcomes[i].answer) tool.jumps.add(published_force(*outcomes[i].answer));
-    errors_.add_step(i, simulation_.loads(i));
+    errors_.add_step(i, simulation_.loads(i), newton);
     count_beyond(i);
     contact = contact || force.contacts > 0;
     flagged = flagged || force.flagged;

@@ -39,10 +39,6 @@ DiscretisationErrors ErrorOfForce::of_step(std::size_t tool,
   return of(tool, tools_[tool].mesh.of(loads));
 }
 
-DiscretisationErrors ErrorOfForce::of_all_steps(std::size_t tool) const noexcept {
-  return of(tool, elements_per_radius(tool));
-}
-
 DiscretisationErrors ErrorOfForce::of(std::size_t tool,
                                       std::optional<double> elements_per_radius) const noexcept {
   const OfTool& of = tools_[tool];

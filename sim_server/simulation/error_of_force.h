@@ -1,5 +1,5 @@
 #pragma once
-#include "common/discretisation_error.h"
+#include "common/error_mean.h"
 #include "sim_server/simulation/mesh_resolution.h"
 #include "sim_server/simulation/simulation.h"
 
@@ -18,9 +18,11 @@ class ErrorOfForce {
 
   /// Returns the errors of a step in which a tool loads the surface so. O(loads); does not allocate.
   DiscretisationErrors of_step(std::size_t tool, std::span<const VertexLoad> loads) const noexcept;
-  /// Adds a step, which is then part of `elements_per_radius` and `of_all_steps`.
-  void add_step(std::size_t tool, std::span<const VertexLoad> loads) noexcept {
+  /// Adds a step with a force of `newton` (N) on the tool, which is then part of `elements_per_radius` and
+  /// `of_all_steps`.
+  void add_step(std::size_t tool, std::span<const VertexLoad> loads, double newton) noexcept {
     tools_[tool].mesh.add(loads);
+    tools_[tool].steps.add(of_step(tool, loads), newton);
   }
 
   /// Elements to a radius of a tool that can press, where the mesh is finest of what it can touch; nothing
@@ -30,8 +32,8 @@ class ErrorOfForce {
   std::optional<double> elements_per_radius(std::size_t tool) const noexcept {
     return tools_[tool].mesh.elements_per_radius();
   }
-  /// Returns the errors over all steps so far in which a tool was in contact.
-  DiscretisationErrors of_all_steps(std::size_t tool) const noexcept;
+  /// Returns the mean errors over all steps so far, each by the size of its force.
+  DiscretisationErrors of_all_steps(std::size_t tool) const noexcept { return tools_[tool].steps.mean(); }
 
  private:
   DiscretisationErrors of(std::size_t tool, std::optional<double> elements_per_radius) const noexcept;
@@ -40,6 +42,7 @@ class ErrorOfForce {
     DiscretisationErrors known;          // whatever it touches
     std::optional<ElementKind> element;  // for the estimate; nothing where there is none
     MeshResolution mesh;
+    ErrorMeans steps = {};
   };
   std::vector<OfTool> tools_;
 };

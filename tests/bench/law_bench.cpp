@@ -72,7 +72,7 @@ class PublishedTicks {
 void run_observation(benchmark::State& state, std::size_t keep) {
   PublishedTicks ticks;
   const auto laws = ClientConfig{}.scored_laws();
-  Observation observation(laws, Palpation::kRate, "bench", keep);
+  Observation observation(laws, Palpation::kRate, "bench", Workspace{}, keep);
   time_calls(state, kFixed, [&] {
     const TickResult& published = ticks.next();
     observation.tick(published, Time{1000}, 0);

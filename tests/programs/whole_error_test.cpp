@@ -44,25 +44,28 @@ struct PressedColumn {
                      0);
     return read_json(report)["tools"][0]["rendered"];
   }
-  /// The mean error of the felt law by the rows of the trace where it or the force it is held against pushes,
-  /// % of the root mean square of that force in contact.
-  double error_in_trace() {
+  /// The mean of a column of the trace over its rows where what was written to the device or the force it is
+  /// held against pushes, % of the root mean square of that force in contact.
+  double error_in_trace(const std::string& column) {
     std::ifstream file(folder.path() / "trace.csv");
     std::string line, cell;
     std::getline(file, line);
     std::vector<std::string> names;
     for (std::istringstream row(line); std::getline(row, cell, ',');) names.push_back(cell);
-    const auto reference = std::ranges::find(names, "reference_n") - names.begin();
+    const auto at = [&](const std::string& name) {
+      return static_cast<std::size_t>(std::ranges::find(names, name) - names.begin());
+    };
     double error = 0, squared = 0, pushes = 0, touches = 0;
     while (std::getline(file, line)) {
       std::vector<std::string> cells;
       for (std::istringstream row(line); std::getline(row, cell, ',');) cells.push_back(cell);
-      if (cells[static_cast<std::size_t>(reference)].empty()) continue;
-      const double force = std::stod(cells[static_cast<std::size_t>(reference)]);
-      const double off = std::stod(cells[static_cast<std::size_t>(reference) + 1]);
-      error += off;
+      const auto number = [&](const std::string& name) { return std::stod(cells[at(name)]); };
+      if (cells[at("reference_n")].empty()) continue;
+      const double force = number("reference_n");
+      const double written = std::hypot(number("fx_n"), number("fy_n"), number("fz_n"));
+      error += number(column);
       squared += force * force;
-      pushes += force > 0 || off > 0 ? 1 : 0;
+      pushes += force > 0 || written > 0 ? 1 : 0;
       touches += force > 0 ? 1 : 0;
     }
     return 100 * error / pushes / std::sqrt(squared / touches);
@@ -78,7 +81,10 @@ TEST_CASE("whole error: estimated, then measured by a study, with the extrapolat
   CHECK(rendered["mesh_percent"] == 189);
   CHECK(rendered["motion_percent"] == 0);
   CHECK(rendered["extrapolation_percent"].get<double>() > 0);
-  CHECK(rendered["extrapolation_percent"].get<double>() == Approx(pressed.error_in_trace()));
+  CHECK(rendered["extrapolation_percent"].get<double>() == Approx(pressed.error_in_trace("extrapolation_n")));
+  const double hand = pressed.error_in_trace("error_n");
+  CHECK(rendered["hand_percent"].get<double>() == Approx(hand));
+  CHECK(rendered["total_percent"].get<double>() == Approx(189 + hand));
   CHECK_THAT(rendered["how"]["mesh"].get<std::string>(), Catch::StartsWith("estimated"));
   CHECK_THAT(rendered["how"]["motion"].get<std::string>(), Catch::StartsWith("none"));
   CHECK_THAT(pressed.said, Catch::Contains("mesh              189   estimated"));

@@ -1,13 +1,12 @@
-#include "haptic_client/evaluation/published_errors.h"
+#include "common/error_mean.h"
 
 #include "tests/support/catch.h"
 
 using namespace palpate;
-using namespace palpate::client;
 
 TEST_CASE(
-    "published errors: a mean by the size of the force, with the source of most of it, unknown left out") {
-  PublishedErrors errors;
+    "error means: a mean by the size of the force, with the source of most of it, unknown left out") {
+  ErrorMeans errors;
   CHECK_FALSE(errors.mean().mesh.known());
   errors.add({{ErrorSource::kEstimated, 4}, {ErrorSource::kUnknown, 0}}, 3);
   errors.add({{ErrorSource::kUnknown, 0}, {ErrorSource::kUnknown, 0}}, 100);

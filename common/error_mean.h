@@ -3,13 +3,13 @@
 
 #include "common/discretisation_error.h"
 
-namespace palpate::client {
+namespace palpate {
 
-/// Mean over samples of one published error. The source is that of most of the known weight.
-class PublishedError {
+/// Mean of one error over steps or samples. The source is that of most of the known weight.
+class ErrorMean {
  public:
   void add(const DiscretisationError& error, double weight) noexcept;
-  /// Unknown while no sample had it.
+  /// Unknown while nothing had it.
   DiscretisationError mean() const noexcept;
 
  private:
@@ -17,16 +17,16 @@ class PublishedError {
   std::array<double, 4> weights_{};  // by source
 };
 
-/// Means of the published errors of mesh and time step, each sample weighted by the size of its force. Haptic
-/// thread; does not allocate.
-class PublishedErrors {
+/// Means of the errors by mesh and time step, each step or sample weighted by the size of its force: the server
+/// and the client of a session say the same of it. One thread; does not allocate.
+class ErrorMeans {
  public:
   /// `newton`: size of the force, N.
   void add(const DiscretisationErrors& errors, double newton) noexcept;
   DiscretisationErrors mean() const noexcept { return {mesh_.mean(), time_step_.mean()}; }
 
  private:
-  PublishedError mesh_, time_step_;
+  ErrorMean mesh_, time_step_;
 };
 
-}  // namespace palpate::client
+}  // namespace palpate

@@ -1,16 +1,16 @@
-#include "haptic_client/evaluation/published_errors.h"
+#include "common/error_mean.h"
 
 #include <algorithm>
 
-namespace palpate::client {
+namespace palpate {
 
-void PublishedError::add(const DiscretisationError& error, double weight) noexcept {
+void ErrorMean::add(const DiscretisationError& error, double weight) noexcept {
   if (!error.known()) return;
   sum_ += weight * static_cast<double>(error.percent);
   weights_[static_cast<std::size_t>(error.source)] += weight;
 }
 
-DiscretisationError PublishedError::mean() const noexcept {
+DiscretisationError ErrorMean::mean() const noexcept {
   double all = 0;
   for (const double weight : weights_) all += weight;
   if (all == 0) return {};
@@ -18,9 +18,9 @@ DiscretisationError PublishedError::mean() const noexcept {
   return {static_cast<ErrorSource>(most), static_cast<float>(sum_ / all)};
 }
 
-void PublishedErrors::add(const DiscretisationErrors& errors, double newton) noexcept {
+void ErrorMeans::add(const DiscretisationErrors& errors, double newton) noexcept {
   mesh_.add(errors.mesh, newton);
   time_step_.add(errors.time_step, newton);
 }
 
-}  // namespace palpate::client
+}  // namespace palpate
