@@ -17,8 +17,8 @@ class ErrorMean {
   std::array<double, 4> weights_{};  // by source
 };
 
-/// Means of the errors by mesh and time step, each step or sample weighted by the size of its force: the server
-/// and the client of a session say the same of it. One thread; does not allocate.
+/// Means of the errors by mesh and time step, each step or sample weighted by the size of its force: the
+/// server and the client of a session say the same of it. One thread; does not allocate.
 class ErrorMeans {
  public:
   /// `newton`: size of the force, N.

@@ -13,11 +13,11 @@ struct RenderedForce {
 /// Error of the force on the hand, % of the root mean square of the force that was right. NaN: nothing was
 /// touched.
 struct RenderedErrorParts {
-  ErrorSizes hand;                  ///< |written - right|
+  ErrorSizes hand;                   ///< |written - right|
   double extrapolation_percent = 0;  ///< mean |law - right| between samples that follow each other
-  double outages_percent = 0;       /// and where no sample came for longer than `kOutage`
-  double fades_percent = 0;         /// mean |faded - law|: soft start, fades of old and unsettled forces
-  double limits_percent = 0;        /// mean |written - faded|: passivity, damping, largest force and slew
+  double outages_percent = 0;        /// and where no sample came for longer than `kOutage`
+  double fades_percent = 0;          /// mean |faded - law|: soft start, fades of old and unsettled forces
+  double limits_percent = 0;         /// mean |written - faded|: passivity, damping, largest force and slew
 };
 
 /// Adds up by how much the force that was written to the device missed the one that was right, and why. By

@@ -94,8 +94,7 @@ void Scoring::take(const Sample& sample, const PathTick& now, ErrorSums& sums) n
     laws_[i].take(sample, now.p, now.t);
     if (laws_[i].period() > Time::zero()) tables_[i].add_jump((laws_[i].force(now.p, now.t) - old).norm());
   }
-  past_.take(sample, now,
-             [&](const PastTick& tick, const RightForce& right) { judge(tick, right, sums); });
+  past_.take(sample, now, [&](const PastTick& tick, const RightForce& right) { judge(tick, right, sums); });
 }
 
 void Scoring::judge(const PastTick& tick, const RightForce& right, ErrorSums& sums) noexcept {

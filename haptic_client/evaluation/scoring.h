@@ -38,8 +38,8 @@ class Scoring {
   void judge_between_samples();
 
   /// Scores one tick with the tool at `p_W` (m) at `t`; `taken`: the sample that the pipeline took in this
-  /// tick, or null; `rendered`: the force on the hand that holds the tool, if one does. Scored ticks are added
-  /// to `sums`.
+  /// tick, or null; `rendered`: the force on the hand that holds the tool, if one does. Scored ticks are
+  /// added to `sums`.
   void tick(const Vec3& p_W, Time t, const Sample* taken, ErrorSums& sums,
             const std::optional<RenderedForce>& rendered = {}) noexcept;
 
@@ -81,6 +81,7 @@ class Scoring {
   };
   /// Returns the ticks that the last `tick` scored; they are earlier ones.
   std::span<const ScoredTick> newly_scored() const noexcept { return newly_scored_; }
+
  private:
   void take(const Sample& sample, const PathTick& now, ErrorSums& sums) noexcept;
   void judge(const PastTick& tick, const RightForce& right, ErrorSums& sums) noexcept;
@@ -89,7 +90,7 @@ class Scoring {
   UnexplainedJumps jumps_;
   std::vector<std::string> names_;
   std::vector<ForceEstimate> laws_;
-  std::vector<ErrorTable> tables_, paper_;                // the latter against the line
+  std::vector<ErrorTable> tables_, paper_;  // the latter against the line
   PastTicks past_;
   RenderedError rendered_;
   std::array<std::uint64_t, kReferenceKinds> between_{};  // ticks

@@ -22,12 +22,12 @@ Sample sample_of(const protocol::ForceSample& message, SurfaceModel* model = nul
 
 /// Result of one tick.
 struct TickResult {
-  Vec3 f_D = Vec3::Zero();     ///< to the device, N
-  Vec3 law_W = Vec3::Zero();   ///< what the law said, N, world
-  double gain = 0;             ///< [0, 1], what soft start and fades leave of it; 0 of a force that is off
-  protocol::ToolState tool;  ///< to the server
-  bool used = false;         ///< `sample` arrived, was newer, and is the newest now
-  bool flagged = false;      ///< the server calls its force not settled
+  Vec3 f_D = Vec3::Zero();    ///< to the device, N
+  Vec3 law_W = Vec3::Zero();  ///< what the law said, N, world
+  double gain = 0;            ///< [0, 1], what soft start and fades leave of it; 0 of a force that is off
+  protocol::ToolState tool;   ///< to the server
+  bool used = false;          ///< `sample` arrived, was newer, and is the newest now
+  bool flagged = false;       ///< the server calls its force not settled
   Sample sample{};
   Time step{};                                      ///< that the server spent on it
   std::optional<DiscretisationErrors> errors = {};  ///< of its force, where the server published them

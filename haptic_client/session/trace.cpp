@@ -12,10 +12,7 @@ constexpr std::size_t kFlushAt = 1 << 16;  // bytes
 }
 
 TraceWriter::TraceWriter(const std::filesystem::path& file, const std::vector<std::string>& laws)
-    : name_(file),
-      file_(file, Contents::kTable),
-      out_(file_.path(), std::ios::binary),
-      laws_(laws.size()) {
+    : name_(file), file_(file, Contents::kTable), out_(file_.path(), std::ios::binary), laws_(laws.size()) {
   text_ =
       "tick,t_s,px_m,py_m,pz_m,fx_n,fy_n,fz_n,sample,sample_t_s,sample_n,flagged,mesh_percent,motion_percent,"
       "reference_n,extrapolation_n,error_n";
@@ -61,8 +58,7 @@ void TraceWriter::add_errors(const TickRecord& tick) {
   text_ += ',';
   if (tick.reference) fmt::format_to(out, "{}", (tick.result.law_W - *tick.reference).norm());
   text_ += ',';
-  if (tick.reference && tick.written_W)
-    fmt::format_to(out, "{}", (*tick.written_W - *tick.reference).norm());
+  if (tick.reference && tick.written_W) fmt::format_to(out, "{}", (*tick.written_W - *tick.reference).norm());
 }
 
 void TraceWriter::flush() {

@@ -78,9 +78,10 @@ std::string total_text(const Json& rendered) {
 /// What is known of the law of the tissue itself.
 std::string law_text(const Json& force) {
   const auto strained = force["strained"].get<double>(), samples = force["samples"].get<double>();
-  return strained > 0 ? fmt::format("not known, and not in the sum: strained beyond what it is meant for in "
-                                    "{:.3g} % of the samples",
-                                    100 * strained / samples)
+  return strained > 0 ? fmt::format(
+                            "not known, and not in the sum: strained beyond what it is meant for in "
+                            "{:.3g} % of the samples",
+                            100 * strained / samples)
                       : "not known, and not in the sum: how well it describes this organ";
 }
 

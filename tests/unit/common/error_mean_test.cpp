@@ -4,8 +4,7 @@
 
 using namespace palpate;
 
-TEST_CASE(
-    "error means: a mean by the size of the force, with the source of most of it, unknown left out") {
+TEST_CASE("error means: a mean by the size of the force, with the source of most of it, unknown left out") {
   ErrorMeans errors;
   CHECK_FALSE(errors.mean().mesh.known());
   errors.add({{ErrorSource::kEstimated, 4}, {ErrorSource::kUnknown, 0}}, 3);
