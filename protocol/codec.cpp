@@ -13,7 +13,6 @@ constexpr std::array<std::uint8_t, 4> kMagic{'P', 'L', 'P', 'T'};
 constexpr std::array<std::uint8_t, 2> kReserved{};
 
 static_assert(limits::kToolNumber.most + 1 == kMaxTools);
-static_assert(Telemetry::kColumn.most + 1 == Telemetry::kMostLaws);
 static_assert(limits::kPageNumber.most + 1 == ToolState::kNoPage);
 
 /// Visits a message: true if each of its fields is within its limits.

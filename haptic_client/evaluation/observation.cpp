@@ -1,6 +1,7 @@
 #include "haptic_client/evaluation/observation.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace palpate::client {
 
@@ -55,6 +56,14 @@ void Observation::tick(const TickResult& result, Time took, std::uint64_t missed
   TickRecord& record = ring_[recorded_++ % ring_.size()];
   record = {result, scoring_.forces()};
   if (rendered) record.written_W = rendered->written;
+}
+
+std::optional<double> Observation::total_percent() const noexcept {
+  const DiscretisationErrors published = published_errors_.mean();
+  const double hand = scoring_.rendered().parts().hand.mean_percent;
+  if (!published.mesh.known() || !published.time_step.known() || std::isnan(hand)) return {};
+  return hand + static_cast<double>(published.mesh.percent) +
+         static_cast<double>(published.time_step.percent);
 }
 
 const TickRecord* Observation::leaving() const noexcept {

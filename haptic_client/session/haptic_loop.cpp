@@ -58,8 +58,7 @@ TickResult HapticLoop::tick() noexcept {
 
 /// A message to a page is out of date by then, if the network thread has no room for it.
 void HapticLoop::publish_page(const TickResult& result) noexcept {
-  const protocol::Telemetry* published =
-      telemetry_.tick(result, pipeline_, observation_.scoring(), stats_.missed);
+  const protocol::Telemetry* published = telemetry_.tick(result, pipeline_, observation_, stats_.missed);
   if (published != nullptr && mailboxes_.telemetry.push(*published)) mailboxes_.bell.ring();
 }
 

@@ -42,7 +42,7 @@ TelemetryMaker::TelemetryMaker(const std::string& device, bool motors, const std
 }
 
 const Telemetry* TelemetryMaker::tick(const TickResult& result, const Pipeline& pipeline,
-                                      const Scoring& scoring, std::uint64_t missed) noexcept {
+                                      const Observation& observation, std::uint64_t missed) noexcept {
   const std::int64_t t = result.tool.t_ns;
   if (!wanted_ || !began_) {
     began_ = wanted_;
@@ -53,10 +53,10 @@ const Telemetry* TelemetryMaker::tick(const TickResult& result, const Pipeline& 
   oldest_ns_ = std::max(oldest_ns_, pipeline.age_ns());
   last_ns_ = t;
   const Vec3 rendered_W = pipeline.workspace().force_to_world(result.f_D);
-  if (seen_++ % every_ == every_ - 1) add(rendered_W, scoring);
+  if (seen_++ % every_ == every_ - 1) add(rendered_W, observation.scoring());
   if (next_.count < ticks_) return nullptr;
   next_.f_W = rendered_W.allFinite() ? rendered_W : Vec3::Zero();
-  complete(result, pipeline, scoring, missed);
+  complete(result, pipeline, observation, missed);
   start_at(t);
   return &published_;
 }
@@ -75,8 +75,8 @@ void TelemetryMaker::add(const Vec3& rendered_W, const Scoring& scoring) noexcep
   ++next_.count;
 }
 
-void TelemetryMaker::complete(const TickResult& result, const Pipeline& pipeline, const Scoring& scoring,
-                              std::uint64_t missed) noexcept {
+void TelemetryMaker::complete(const TickResult& result, const Pipeline& pipeline,
+                              const Observation& observation, std::uint64_t missed) noexcept {
   const std::uint16_t motors = next_.flags & Telemetry::kHasMotors;
   next_.flags = motors;
   if (pipeline.limiter().fault() != Fault::kNone) next_.flags |= Telemetry::kFault;
@@ -105,17 +105,24 @@ void TelemetryMaker::complete(const TickResult& result, const Pipeline& pipeline
   append(next_.rendered_law, law_);
   if (const std::string_view other = pipeline.substitute(); !other.empty())
     append(next_.rendered_law, ": "), append(next_.rendered_law, other);
-  next_.laws = static_cast<std::uint8_t>(scoring.names().size());
-  next_.name = {};
-  next_.error_percent = -1;
-  if (next_.laws > 0) {
-    named_ = static_cast<std::uint8_t>((named_ + 1) % next_.laws);
-    next_.named = named_;
-    append(next_.name, scoring.names()[named_]);
-    const double error = scoring.metrics(named_).mean_percent;
-    if (scoring.scored() > 0 && error >= 0) next_.error_percent = static_cast<float>(std::min(error, 1e6));
-  }
+  next_.laws = static_cast<std::uint8_t>(observation.scoring().names().size());
+  name_error(observation);
   published_ = next_;
+}
+
+/// The next of the errors: of a law, or, behind all laws, of the force on the hand.
+void TelemetryMaker::name_error(const Observation& observation) noexcept {
+  const Scoring& scoring = observation.scoring();
+  next_.named = next_.named < next_.laws ? static_cast<std::uint8_t>(next_.named + 1) : std::uint8_t{0};
+  next_.name = {};
+  double error = -1;
+  if (next_.named < next_.laws) {
+    append(next_.name, scoring.names()[next_.named]);
+    if (scoring.scored() > 0) error = scoring.metrics(next_.named).mean_percent;
+  } else {
+    error = observation.total_percent().value_or(-1);
+  }
+  next_.error_percent = error >= 0 ? static_cast<float>(std::min(error, 1e6)) : -1;
 }
 
 }  // namespace palpate::client

@@ -58,10 +58,8 @@ Json whole_error_report(const Observation& observation) {
   report["outages_percent"] = known(parts.outages_percent);
   report["fades_percent"] = known(parts.fades_percent);
   report["limits_percent"] = known(parts.limits_percent);
-  const bool all = touched && published.mesh.known() && published.time_step.known();
-  report["total_percent"] = all ? Json(parts.hand.mean_percent + static_cast<double>(published.mesh.percent) +
-                                       static_cast<double>(published.time_step.percent))
-                                : Json();
+  const std::optional<double> total = observation.total_percent();
+  report["total_percent"] = total ? Json(*total) : Json();
   return report;
 }
 

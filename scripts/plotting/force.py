@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draw the force of a haptic trace: the first contact, and by how much each law is off between two samples.
+"""Draw the force of a haptic trace: the first contact after the soft start, and by how much each law is off between two samples.
 
 TRACE.csv has a row per tick of the haptic client, with the columns t_s, fx_n, fy_n,
 fz_n (the force given to the hand), sample_t_s, sample_n (filled only where a force
@@ -24,7 +24,7 @@ from bisect import bisect_right
 from pathlib import Path
 
 from pictures import CannotSave, add_format, in_words, prepare, save, style_of_laws
-from session_report import Unusable, at_work, read_json, share_text
+from session_report import Unusable, at_work, error_of, read_json, share_text
 
 WIDTH_PX, HEIGHT_PX, DPI = 1600, 1150, 100
 NEEDED = ("t_s", "fx_n", "fy_n", "fz_n", "sample_t_s", "sample_n")
@@ -32,6 +32,7 @@ NOT_LAWS = ("fx_n", "fy_n", "fz_n", "sample_n", "reference_n", "extrapolation_n"
 BEFORE, AFTER = 0.03, 0.05    # s around the first contact
 LONGEST, SHORTEST = 2.0, 0.3  # s of it that are shown
 CLEAR_SHARE = 0.2             # of the largest force: that much is clearly a contact
+SOFT_START = 1.0              # s from the first sample on, in which the client lets the force rise
 TOUCH_SHARE = 0.01            # of the largest force: less than that is no contact
 SAME_SHARE = 0.005            # of the largest force: laws this near to each other look like one
 WELL_SEEN = 0.08              # of the largest error: an error below it needs a scale of its own
@@ -89,13 +90,23 @@ def delay_of(trace):
     return statistics.median(late) if late else None
 
 
-def first_contact_window(times, forces):
-    """From just before the force first rises to a clear contact until it is gone again, or LONGEST."""
+def end_of_soft_start(trace):
+    """When the force has risen; the start of a trace that has no sample, or begins later."""
+    moments = [time for time, arrived in zip(trace["t_s"], trace["sample_t_s"]) if not math.isnan(arrived)]
+    begins = trace.get("sample", [1])[0] in (0, 1)
+    return moments[0] + SOFT_START if moments and begins else trace["t_s"][0]
+
+
+def first_contact_window(times, forces, risen):
+    """From just before the force first rises to a clear contact until it is gone again, or LONGEST; of the contacts
+    that begin after `risen` (s), if one does."""
     largest = max((force for force in forces if not math.isnan(force)), default=0.0)
     if largest == 0:
         return times[0], min(times[-1], times[0] + LONGEST)
     touch = TOUCH_SHARE * largest
-    moment = next(i for i, force in enumerate(forces) if force >= CLEAR_SHARE * largest)
+    free = next((i for i, time in enumerate(times) if time >= risen and forces[i] <= touch), 0)
+    clear = [i for i, force in enumerate(forces) if force >= CLEAR_SHARE * largest]
+    moment = next((i for i in clear if i >= free), clear[0])
     first = moment
     while first > 0 and forces[first - 1] > touch:
         first -= 1
@@ -155,7 +166,7 @@ def groups_of(lines, largest):
 
 def heading_of(trace, report, server, tool):
     """What was touched, felt, at which rate and delay; of what is known."""
-    parts = []
+    parts, error = [], ""
     if server and "title" in server:
         parts.append(server["title"].text())
     rate = None
@@ -169,6 +180,7 @@ def heading_of(trace, report, server, tool):
             parts.append(f"rendered: {in_words(found[0])}, {share_text(found[1])} of the time")
         if len(tools) > 1:
             parts.append(f"tool {tool} of {len(tools)}")
+        error = error_of(node)
     if server:
         rate = server["rate_hz"].number()
     samples = samples_of(trace)
@@ -179,19 +191,24 @@ def heading_of(trace, report, server, tool):
     delay = delay_of(trace)
     if delay is not None:
         parts.append(f"delay {1000 * delay:.3g} ms (computation and link)")
-    return "   \N{MIDDLE DOT}   ".join(parts) or "Force on the hand"
+    heading = "   \N{MIDDLE DOT}   ".join(parts) or "Force on the hand"
+    return f"{heading}\n{error}" if error else heading
 
 
-def draw_whole(axes, times, forces, window):
+def draw_whole(axes, times, forces, window, risen):
     axes.plot(times, forces, color="#333333", linewidth=1)
     axes.axvspan(*window, color="#56B4E9", alpha=0.35, linewidth=0)
-    axes.set_title("Force on the hand, the whole trace (shaded: shown below)", loc="left")
+    note = ""
+    if risen > times[0]:
+        axes.axvspan(times[0], risen, facecolor="none", edgecolor="#999999", hatch="//", linewidth=0)
+        note = "; hatched: soft start"
+    axes.set_title(f"Force on the hand, the whole trace (shaded: shown below{note})", loc="left")
     axes.set(ylabel="|F| (N)", xlim=(times[0], times[-1]))
     axes.set_ylim(bottom=0)
     axes.grid(alpha=0.3)
 
 
-def draw_laws(axes, times, lines, groups, styles, hand, near):
+def draw_laws(axes, times, lines, groups, styles, hand, near, after):
     axes.plot(times, hand, color=HAND_COLOUR, linewidth=6, solid_capstyle="butt", label="given to the hand")
     for group in groups:
         colour, line = styles[group[0]]
@@ -201,7 +218,7 @@ def draw_laws(axes, times, lines, groups, styles, hand, near):
         stems = axes.stem(*zip(*near), basefmt=" ", label="computed by the simulation")
         stems.stemlines.set(color=SAMPLE_COLOUR, linewidth=0.8, alpha=0.35)
         stems.markerline.set(color=SAMPLE_COLOUR, markersize=4.5, zorder=5)
-    axes.set_title("The first contact: impulses are what the simulation computed, lines what fills the gaps", loc="left")
+    axes.set_title(f"The first contact{after}: impulses are what the simulation computed, lines what fills the gaps", loc="left")
     axes.set(ylabel="|F| (N)")
     top = max([*(v for line in lines.values() for v in line if not math.isnan(v)), *hand, 0])
     axes.set_ylim(0, 1.05 * top if top > 0 else 1)
@@ -241,8 +258,12 @@ def draw(trace, window, heading):
         3, 1, figsize=(WIDTH_PX / DPI, HEIGHT_PX / DPI), dpi=DPI, facecolor="white",
         height_ratios=(1, 3, 2.4), layout="constrained")
     figure.get_layout_engine().set(w_pad=0.12, h_pad=0.1)
+    heading, _, off = heading.partition("\n")
     figure.suptitle(heading, fontsize=15, weight="bold")
-    draw_whole(whole, times, forces, window)
+    if off:
+        whole.text(0.5, 1.35, off, transform=whole.transAxes, fontsize=11, ha="center")
+    risen = end_of_soft_start(trace)
+    draw_whole(whole, times, forces, window, risen)
 
     # A tick to either side, so that lines reach the edges of the panel.
     inside = [i for i, time in enumerate(times) if begin <= time <= end]
@@ -250,7 +271,8 @@ def draw(trace, window, heading):
     lines = {law: trace[f"{law}_n"][ticks] for law in laws_of(trace)}
     near = [(time, force) for time, force in samples if begin <= time <= end]
     groups, styles = groups_of(lines, max(forces, default=0)), style_of_laws(lines)
-    draw_laws(zoom, times[ticks], lines, groups, styles, forces[ticks], near)
+    draw_laws(zoom, times[ticks], lines, groups, styles, forces[ticks], near,
+              " after the soft start" if times[0] < risen <= begin else "")
     draw_errors(error, times[ticks], lines, groups, styles, reference_at(times[ticks], samples))
     for axes in (zoom, error):
         axes.set_xlim(begin, end)
@@ -286,7 +308,7 @@ def main():
             raise Unusable(f"{arguments.output}: the name must end in .png")
         trace = read_trace(arguments.trace)
         times = trace["t_s"]
-        window = arguments.seconds or first_contact_window(times, norm_of_force(trace))
+        window = arguments.seconds or first_contact_window(times, norm_of_force(trace), end_of_soft_start(trace))
         if not any(window[0] <= time <= window[1] for time in times):
             raise Unusable(f"--seconds {window[0]:g} {window[1]:g}: nothing there, "
                            f"the trace goes from {times[0]:g} to {times[-1]:g}")

@@ -196,7 +196,8 @@ def draw(tool, paths):
                                    facecolor="white", height_ratios=heights, layout="constrained", squeeze=False)
     axes = [row[0] for row in axes]
     figure.get_layout_engine().set(w_pad=0.12, h_pad=0.08)
-    figure.suptitle("\n".join(line for line in (tool.heading, tool.error) if line), fontsize=15, weight="bold")
+    lines = (tool.heading, *tool.error.split("   ", 1))
+    figure.suptitle("\n".join(line for line in lines if line), fontsize=14, weight="bold")
     end = max(timeline.edges[-1], server.edges[-1] if server and server.edges else 0)
     unit, name = next((unit, name) for begin, unit, name in TIME_UNITS if end >= begin)
     styles = style_of_laws(tool.errors)

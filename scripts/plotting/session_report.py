@@ -104,7 +104,7 @@ class Tool:
     """What a picture shows."""
     file: Path
     heading: str
-    error: str                   # what mesh, time step and extrapolation cost the force felt; empty: not told
+    error: str                   # by how much the force on the hand is off, and why; empty: not told
     felt: str                    # the row that was felt
     names: dict                  # {law: what stands in its row}
     timeline: Timeline
@@ -163,9 +163,9 @@ def felt_of(node, laws):
     return text if law == method else f"{text} (asked: {method})", law if law in laws else method
 
 
-# Key of the percentage, of its source, and what it is of.
-PARTS_OF_ERROR = (("mesh_percent", "mesh", "mesh"), ("motion_percent", "motion", "time step"),
-                  ("extrapolation_percent", "extrapolation", "extrapolation"))
+# Keys of the percentages that the error on the hand adds up from, and their names.
+PARTS_OF_ERROR = (("mesh_percent", "mesh"), ("motion_percent", "time step"), ("extrapolation_percent", "extrapolation"),
+                  ("outages_percent", "outages"), ("fades_percent", "fades"), ("limits_percent", "limits"))
 
 
 def two_figures(value):
@@ -174,16 +174,19 @@ def two_figures(value):
 
 
 def error_of(node):
-    """"mesh 3.5 % (estimated), time step 0 % (none), extrapolation 0.24 % (measured)"; empty of an older report."""
+    """"error of the force on the hand, of its RMS: at most 4.3 % ..." and its parts; empty of an older report."""
     felt = node["rendered"] if "rendered" in node else None
-    if not felt or "mesh_percent" not in felt:
+    if not felt or "total_percent" not in felt:
         return ""
-    parts = []
-    for key, how, name in PARTS_OF_ERROR:
+
+    def text(key, name=""):
         percent = felt[key].number(or_null=True)
-        source = felt["how"][how].text().split()[0].rstrip(":")
-        parts.append(f"{name} unknown" if math.isnan(percent) else f"{name} {two_figures(percent)} % ({source})")
-    return "error of the force felt, of its RMS:   " + "   ".join(parts)
+        return f"{name} unknown".strip() if math.isnan(percent) else f"{name} {two_figures(percent)} %".strip()
+
+    total = "not known" if math.isnan(felt["total_percent"].number(or_null=True)) else f"at most {text('total_percent')}"
+    return (f"error of the force on the hand, of its RMS: {total} in the mean   ("
+            + ", ".join(text(key, name) for key, name in PARTS_OF_ERROR)
+            + f"; worst tick {text('hand_max_percent')})")
 
 
 def read_tool(report, server, node, index, count):

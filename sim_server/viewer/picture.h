@@ -106,6 +106,8 @@ struct SeenClient {
   Name law{};  ///< the rendered one; behind a colon, its substitute
   std::array<Name, kMostLaws> law_names{};
   std::array<float, kMostLaws> errors_percent{};  ///< NaN: not scored
+  float total_percent =
+      std::numeric_limits<float>::quiet_NaN();  ///< at most, of the force on the hand; NaN: not known
   std::array<Name, kMostInterventions> intervention_names{};
   std::array<std::uint64_t, kMostInterventions> intervention_counts{};
   std::array<Name, kMostStates> state_names{};  ///< what holds now: "fault", "clutched", ...

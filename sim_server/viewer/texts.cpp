@@ -144,6 +144,7 @@ std::string client_text(const SeenClient& client) {
                    {"law", text_of(client.law)},
                    {"laws", laws},
                    {"errors_percent", errors},
+                   {"total_percent", number_or_null(static_cast<double>(client.total_percent))},
                    {"age_ms", brief(client.age_ms)},
                    {"period_ms", brief(client.period_ms)},
                    {"missed", client.missed},

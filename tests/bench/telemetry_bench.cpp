@@ -14,8 +14,9 @@ using namespace client;
 void run(benchmark::State& state, bool wanted) {
   constexpr int kTicks = 1000;
   Pipeline pipeline(find_row(extrapolators(), "constant", "law", "bench").make(), {}, {});
-  Scoring scoring({"constant", "linear_time", "linear_position", "two_tangents", "local_contact"}, kTicks,
-                  "bench");
+  const Observation observation(
+      {"constant", "linear_time", "linear_position", "two_tangents", "local_contact"}, kTicks, "bench",
+      Workspace{}, 0);
   TelemetryMaker maker("simulated", false, "constant", kTicks);
   maker.want(wanted);
   std::uint64_t tick = 0, messages = 0;
@@ -23,7 +24,7 @@ void run(benchmark::State& state, bool wanted) {
     for (int i = 0; i < kTicks; ++i) {
       TickResult result;
       result.tool.t_ns = static_cast<std::int64_t>(++tick) * 1'000'000;
-      messages += maker.tick(result, pipeline, scoring, 0) != nullptr ? 1 : 0;
+      messages += maker.tick(result, pipeline, observation, 0) != nullptr ? 1 : 0;
     }
   };
   second();

@@ -111,7 +111,7 @@ class MadeSession:
 
     def client(self, t, device="browser"):
         return json.dumps({"client": {
-            "tool": 0, "law": "best_recent: two_tangents", "laws": LAWS, "errors_percent": [11 + math.sin(t), 6, 3.2 + 0.5 * math.cos(t)],
+            "tool": 0, "law": "best_recent: two_tangents", "laws": LAWS, "errors_percent": [11 + math.sin(t), 6, 3.2 + 0.5 * math.cos(t)], "total_percent": 45.6,
             "age_ms": 38 + 9 * math.sin(5 * t), "period_ms": 2.0 + 0.05 * math.sin(40 * t), "missed": 3, "passivity_gain": 1.0,
             "interventions": {"clamped": 0, "slew_limited": 2, "faded": 1}, "states": ["device_lost"], "felt": [0, 0, self.force(t)],
             "p": self.tip(t), "device": device, "has_motors": False}})

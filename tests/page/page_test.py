@@ -51,6 +51,7 @@ class PageTest(PageCase):
         self.assertEqual(self.number("Model"), "made up")
         self.wait_number("Law felt", lambda text: text == "best recent: two tangents")  # of another message than the rate
         self.assertEqual(self.number("Mesh"), "41.0")  # beside the small error of the extrapolation
+        self.assertEqual(self.number("Force on the hand"), "45.6")
         self.assertEqual(self.text("error-beside"), "mesh 41.0 % estimated")
         self.assertEqual(self.number("Extrapolation"), "\u2013")  # of "best_recent", which runs not beside itself here
         self.assertEqual(self.number("Now"), "device lost")

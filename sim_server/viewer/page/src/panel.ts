@@ -97,6 +97,7 @@ export class Panel {
     const { mesh, time_step } = now;
     set_text(by_id("error-beside"), mesh.percent === null ? "mesh not known" : `mesh ${figures(mesh.percent)} % ${mesh.source}`);
     return [
+      ["Force on the hand", figures(client?.total_percent ?? null), "% at most, in the mean"],
       ["Mesh", figures(mesh.percent), `% ${mesh.source}`],
       ["Time step", figures(time_step.percent), `% ${time_step.source}`],
       ["Extrapolation", figures(felt), "% measured here"],

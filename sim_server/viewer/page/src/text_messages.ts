@@ -74,6 +74,7 @@ export interface Client {
   law: string;
   laws: string[];
   errors_percent: (number | null)[];
+  total_percent: number | null;
   age_ms: number | null;
   period_ms: number | null;
   missed: number | null;
@@ -212,6 +213,7 @@ function client(x: Json): Client {
     law: text(x.law),
     laws: list(x.laws).map(text),
     errors_percent: list(x.errors_percent).map(number),
+    total_percent: number(x.total_percent),
     age_ms: number(x.age_ms),
     period_ms: number(x.period_ms),
     missed: number(x.missed),

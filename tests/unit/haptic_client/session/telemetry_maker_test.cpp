@@ -24,7 +24,7 @@ struct Client {
   explicit Client(double ticks_hz)
       : rate_hz(ticks_hz),
         pipeline(find_row(extrapolators(), "constant", "law", "test").make(), {}, {}),
-        scoring({"constant", "linear_time"}, ticks_hz, "test"),
+        observation({"constant", "linear_time"}, ticks_hz, "test", Workspace{}, 0),
         maker("falcon", true, "constant", ticks_hz) {}
 
   /// One tick; samples of (0, `newton`, 0) come at 30 Hz.
@@ -34,16 +34,17 @@ struct Client {
     if (ticks % static_cast<std::uint64_t>(rate_hz / 30) == 0) {
       sample = protocol::ForceSample{.number = ++samples, .tool_t_ns = t.count()};
       sample->f_W = {0, newton, 0};
+      sample->flags |= protocol::ForceSample::kHasErrors;
+      sample->errors = {{ErrorSource::kMeasured, 30}, {ErrorSource::kNone, 0}};
     }
     const TickResult result = pipeline.tick({.t = t}, sample ? &*sample : nullptr);
-    ErrorSums sums;
-    scoring.tick(result.tool.p_W, t, result.used ? &result.sample : nullptr, sums);
-    return maker.tick(result, pipeline, scoring, 7);
+    observation.tick(result, Time::zero(), 0);
+    return maker.tick(result, pipeline, observation, 7);
   }
 
   double rate_hz;
   Pipeline pipeline;
-  Scoring scoring;
+  Observation observation;
   TelemetryMaker maker;
   std::uint64_t ticks = 0, samples = 0;
 };
@@ -80,15 +81,20 @@ TEST_CASE("telemetry: what is felt, by which law, on which device, and the laws 
   Client client(500);
   client.maker.want(true);
   const Telemetry* newest = nullptr;
-  std::array<std::string, 2> names;
+  std::array<std::string, 3> names;
+  std::array<float, 3> errors;
   for (int i = 0; i < 2000; ++i) {
     const Telemetry* message = client.tick(1.5);
     if (message == nullptr) continue;
     names[message->named] = text(message->name);
+    errors[message->named] = message->error_percent;
     newest = message;
   }
   REQUIRE(newest != nullptr);
-  CHECK(names == std::array<std::string, 2>{"constant", "linear_time"});
+  CHECK(names == std::array<std::string, 3>{"constant", "linear_time", ""});
+  CHECK_THAT(errors[0], WithinAbs(0.0F, 1e-3F));
+  // Behind the laws: the mesh, and a soft start of 1 s in the 4 s so far.
+  CHECK_THAT(errors[2], WithinRel(30 + 100 * 0.5F / 4, 0.02F));
   CHECK(text(newest->device) == "falcon");
   CHECK(text(newest->rendered_law) == "constant");
   CHECK(newest->flags == Telemetry::kHasMotors);

@@ -77,6 +77,10 @@ TEST_CASE("page news: nothing of a client that left is said of the next") {
   CHECK(std::isnan(feed.clients[0].errors_percent[1]));  // not told yet
   report(1, 4);
   CHECK(feed.clients[0].errors_percent[1] == 4);
+  CHECK(std::isnan(feed.clients[0].total_percent));
+  report(2, 7);  // behind the laws
+  CHECK(feed.clients[0].total_percent == 7);
+  CHECK(feed.clients[0].errors_percent[1] == 4);
   hold(false);
   hold(true);
   report(0, 5);

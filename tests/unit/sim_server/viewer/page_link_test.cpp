@@ -280,6 +280,7 @@ TEST_CASE("viewer: what a client tells reaches a page once") {
   client.law = SeenClient::Name{"linear_position"};
   client.law_names = {SeenClient::Name{"constant"}, SeenClient::Name{"linear_position"}};
   client.errors_percent = {12.5F, std::nanf("")};
+  client.total_percent = 50.25F;
   client.states = 1;
   client.state_names[0] = SeenClient::Name{"clutched"};
   client.interventions = 1;
@@ -301,6 +302,7 @@ TEST_CASE("viewer: what a client tells reaches a page once") {
   CHECK(published["law"] == "linear_position");
   CHECK(published["errors_percent"][0] == 12.5);
   CHECK(published["errors_percent"][1].is_null());
+  CHECK(published["total_percent"] == 50.25);
   CHECK(published["interventions"]["clamped"] == 3);
   CHECK(published["states"] == std::vector<std::string>{"clutched"});
   session.maker->update(session.time);
