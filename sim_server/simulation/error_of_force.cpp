@@ -10,18 +10,28 @@ bool steps_matter(const Scene& scene, const ToolSettings& tool) {
   return model_of(scene.deformation).moves || tool.shape.friction > 0;
 }
 
+/// Linear elements of tissue that is all but incompressible.
+bool locks(const Material& material) {
+  constexpr double kNearOneHalf = 0.49;
+  return material.element == ElementKind::kLinear && material.poisson_ratio > kNearOneHalf;
+}
+
 }  // namespace
 
 ErrorOfForce::ErrorOfForce(const Scene& scene, const Simulation& simulation,
                            const std::optional<DiscretisationErrors>& studied) {
   const bool deforms = scene.material && model_of(scene.deformation).deforms();
+  if (deforms && scene.material->element == ElementKind::kLinear) {
+    thin_.emplace(simulation.mesh(), simulation.surface(), fixed_vertices(scene, simulation.mesh()));
+  }
   for (const ToolSettings& tool : scene.tools) {
     DiscretisationErrors errors;
     if (studied && tools_.empty() && !tool.grasps()) errors = *studied;  // it pressed with the first tool
     if (!deforms) errors.mesh.source = ErrorSource::kNone;
     if (!steps_matter(scene, tool)) errors.time_step = {.source = ErrorSource::kNone};
     std::optional<ElementKind> element;
-    if (deforms && !tool.grasps()) element = scene.material->element;  // the estimate is of tips that press
+    if (deforms && !tool.grasps() && !locks(*scene.material))
+      element = scene.material->element;  // the estimate is of tips that press
     const double radius = tool.shape.radius;
     tools_.push_back({errors, element,
                       scene.cutting
@@ -36,6 +46,7 @@ std::optional<double> ErrorOfForce::finest(std::size_t tool, std::span<const Tri
 
 DiscretisationErrors ErrorOfForce::of_step(std::size_t tool,
                                            std::span<const VertexLoad> loads) const noexcept {
+  if (thin_ && thin_->bears(loads)) return tools_[tool].known;
   return of(tool, tools_[tool].mesh.of(loads));
 }
 

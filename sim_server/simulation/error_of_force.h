@@ -2,13 +2,16 @@
 #include "common/error_mean.h"
 #include "sim_server/simulation/mesh_resolution.h"
 #include "sim_server/simulation/simulation.h"
+#include "sim_server/simulation/thin_tissue.h"
 
 namespace palpate::sim {
 
 /// Errors of the force on each tool by mesh and time step. Measured where a study of the scene is known. Else
 /// the mesh's share is estimated in each step from how fine it is where the tool presses
-/// (`estimated_mesh_error`); that of the time step is unknown, but where the force follows from the poses of
-/// the step alone, so that no step is too long. One thread.
+/// (`estimated_mesh_error`), but not where that table says nothing: of linear elements on tissue that bends
+/// (`ThinTissue`), or that is all but incompressible (nu above 0.49: they lock). That of the time step is
+/// unknown, but where the force follows from the poses of the step alone, so that no step is too long. One
+/// thread.
 class ErrorOfForce {
  public:
   /// `studied`: of this scene, pressed with its first tool. `simulation` is read here only. O(vertices x
@@ -45,6 +48,7 @@ class ErrorOfForce {
     ErrorMeans steps = {};
   };
   std::vector<OfTool> tools_;
+  std::optional<ThinTissue> thin_;  // of linear elements
 };
 
 }  // namespace palpate::sim

@@ -5,6 +5,7 @@
 #include "sim_server/study/studied_errors.h"
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"
+#include "tests/support/solids.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace palpate;
@@ -103,4 +104,30 @@ TEST_CASE(
   CHECK(ErrorOfForce(scene, simulation, found).of_step(0, loads).mesh.source == ErrorSource::kUnknown);
   folder.write("scene.toml", "rate_hz = 31");
   CHECK_FALSE(find_studied(cache, scene));
+}
+
+TEST_CASE(
+    "error of the force: of linear elements that bend or lock it is not known how far the mesh is off") {
+  // A plate of 60 x 60 mm with edges of 3 mm, so many layers thick, held at its rim or on its whole lower
+  // side; pressed in the middle of its upper side.
+  const auto source = [](int layers, double poisson_ratio, bool lies, ElementKind element) {
+    const double thickness = 0.003 * layers;
+    Scene scene = test::scene_of({.young_modulus = 1e4, .poisson_ratio = poisson_ratio, .element = element},
+                                 {Vec3(-1, -1, -1), lies ? Vec3(1, 1e-4, 1) : Vec3(1e-4, 1, 1)}, kRadius);
+    const Simulation simulation(scene, test::corner_block({0.06, thickness, 0.06}, {20, layers, 20}));
+    std::vector<VertexLoad> loads;
+    for (std::size_t k = 0; k < simulation.rest().size(); ++k) {
+      if ((simulation.rest()[k] - Vec3(0.03, thickness, 0.03)).norm() < 0.0015)
+        loads.push_back({static_cast<int>(k), {0, -1, 0}});
+    }
+    REQUIRE(!loads.empty());
+    return ErrorOfForce(scene, simulation).of_step(0, loads).mesh.source;
+  };
+  using enum ElementKind;
+  CHECK(source(1, 0.3, false, kLinear) == ErrorSource::kUnknown);
+  CHECK(source(2, 0.3, false, kLinear) == ErrorSource::kUnknown);
+  CHECK(source(4, 0.3, false, kLinear) == ErrorSource::kEstimated);
+  CHECK(source(1, 0.3, true, kLinear) == ErrorSource::kEstimated);  // it rests on what does not move
+  CHECK(source(4, 0.4999, false, kLinear) == ErrorSource::kUnknown);
+  CHECK(source(4, 0.49, false, kLinear) == ErrorSource::kEstimated);
 }

@@ -1,0 +1,29 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "sim_server/mesh/surface.h"
+#include "sim_server/tissue/deformation_model.h"
+
+namespace palpate::sim {
+
+/// Tissue that bends under a tool, of too few elements to do so: linear ones bend too stiffly by several
+/// hundred percent where one layer of them is all there is (a clamped sheet, by plate theory 442 %), which a
+/// table of elements to a radius of the tool knows nothing of. One thread.
+class ThinTissue {
+ public:
+  static constexpr int kLayers = 3;  ///< of elements, fewer than which are too few
+
+  /// `held`: vertices of `mesh` that do not move: tissue that rests on them does not bend.
+  /// O(tetrahedra + surface), with all vertices within two edges of each of the surface.
+  ThinTissue(const TetMesh& mesh, const Surface& surface, const std::vector<int>& held);
+
+  /// True if at least half of what a tool loads the surface with is on such tissue. O(loads); does not
+  /// allocate.
+  bool bears(std::span<const VertexLoad> loads) const noexcept;
+
+ private:
+  std::vector<std::uint8_t> thin_;  // by vertices of the surface
+};
+
+}  // namespace palpate::sim
