@@ -111,11 +111,14 @@ CaptureSorter::Place CaptureSorter::place_of(const ToolState& state, const Endpo
   return {run, &run->links.back()};
 }
 
+/// The server draws the number of a session: whoever has it goes on with that session, also from another
+/// address.
 CaptureSorter::Place CaptureSorter::known(const Endpoint& client, std::uint64_t session) {
   for (auto run = runs_.rbegin(); run != runs_.rend(); ++run) {
-    if (run->client != client) continue;
     for (auto link = run->links.rbegin(); link != run->links.rend(); ++link) {
-      if (link->session == session) return {&*run, &*link};
+      if (link->session != session) continue;
+      run->client = client;
+      return {&*run, &*link};
     }
   }
   return {};

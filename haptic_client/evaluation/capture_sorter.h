@@ -36,7 +36,7 @@ struct CapturedLink {
 
 /// Run of a client, through all its sessions. A server that was restarted starts a new session.
 struct CapturedRun {
-  protocol::Endpoint client;
+  protocol::Endpoint client;  ///< the newest, where its address changed
   std::vector<CapturedLink> links{};
   std::uint64_t ticks = 0, samples = 0;           ///< tool states and force samples, without duplicates
   std::uint64_t first_tick = 0, newest_tick = 0;  ///< numbers; 0: none yet
@@ -47,10 +47,10 @@ struct CapturedRun {
   std::uint64_t lost() const, reordered() const, duplicated() const;
 };
 
-/// Sorts datagrams of a capture into runs: by the address of the client, and within one address by tick
-/// numbers that start again in a new session. Drops what the capture holds twice (`-i any` sees loopback
-/// twice). Memory: some hundred bytes a session; what comes after 1000 runs, or 1000 sessions of one, is left
-/// out.
+/// Sorts datagrams of a capture into runs: by their session, whose client may change its address; a session
+/// that is new by the address of the client, unless its tick numbers start again. Drops what the capture
+/// holds twice (`-i any` sees loopback twice). Memory: some hundred bytes a session; what comes after 1000
+/// runs, or 1000 sessions of one, is left out.
 class CaptureSorter {
  public:
   /// Which run (from 0) a datagram belongs to, if it is a tool state, force sample or page of a surface of

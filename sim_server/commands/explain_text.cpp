@@ -128,9 +128,10 @@ std::string steps_text(const Explanation& explanation) {
   const std::string requested =
       scene.rate_hz > 0 ? fmt::format("{:g} Hz", scene.rate_hz) : "a step per tool state";
   text += fmt::format(
-      "\n  this machine in contact: {:.0f} Hz by the median step, {:.0f} Hz by all but 1 in 100; asked for: "
-      "{} "
-      "({})\n",
+      "\n  this machine in contact: {:.0f} Hz by the median step, {:.0f} Hz by all but 1 in 100, under a "
+      "press "
+      "that is this command's own: a motion that slides or presses deeper may take longer steps; asked for: "
+      "{} ({})\n",
       1e9 / steps.contact_ns.quantile(0.5), possible_rate_hz(steps), requested,
       scene.rate_where.empty() ? "default" : scene.rate_where);
   return text + fmt::format("  state hash after these steps: {:016x}\n", explanation.state_hash);

@@ -235,6 +235,28 @@ TEST_CASE("two clients in one capture are two sessions, a restarted server is th
   CHECK(all_ticks(file, 2).size() == 20);
 }
 
+TEST_CASE("a session whose client changes its address, and then its session, stays one run") {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.pcap";
+  {
+    CaptureOf capture(file);
+    for (std::uint64_t tick = 1; tick <= 300; ++tick) {
+      const std::uint16_t port = tick <= 100 ? 5000 : 5001;
+      const std::uint64_t session = tick <= 200 ? 7 : 8, base = tick <= 200 ? 0 : 200;
+      if (tick % 10 == 0)
+        capture.sample(sample_of((tick - base) / 10), (tick - base) / 10 + 1, session, port);
+      capture.state(state_at(tick, 0), tick - base, session, port);
+      if (tick == 150) capture.state(state_at(99, 0), 99, 7, 5000);  // a copy of before
+    }
+    capture.close();
+  }
+  const CaptureSurvey found = survey(file, kQuiet);
+  REQUIRE(found.runs.size() == 1);
+  CHECK(found.runs[0].ticks == 300);
+  CHECK(found.runs[0].samples == 30);
+  CHECK(found.runs[0].duplicated() == 1);
+}
+
 TEST_CASE("a capture with nothing of ours, or of another version, is an error that says so") {
   const TemporaryFolder folder;
   const auto file = folder.path() / "a.pcap";
