@@ -108,8 +108,7 @@ void NetLink::pass_on(std::uint64_t session, const protocol::ToolState& state) {
   if (input.session != session) input = {};
   input.session = session;
   input.state = state;
-  if ((state.flags & protocol::ToolState::kDeviceLost) != 0) input.path = {};  // its pose is of long ago
-  input.path.add(state);
+  input.follow(state);
   mailboxes_.tools[state.tool].input.write(input);
 }
 
