@@ -64,6 +64,7 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
     peers_[tool] = {};
   }
   note_holders();
+  if (outcome.mismatch) mismatch.write({*outcome.mismatch, from});
   answer(outcome, from);
   if (outcome.departed != nullptr) tool_is_free(outcome.departed->tool);
   if (outcome.telemetry != nullptr && page_ != nullptr)
