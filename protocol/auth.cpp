@@ -63,6 +63,10 @@ bool authentic(std::span<const std::byte> datagram, const Key& key) noexcept {
   return sodium_memcmp(tag.data(), datagram.last(kTagBytes).data(), kTagBytes) == 0;
 }
 
+bool is_tagged(std::span<const std::byte> datagram) noexcept {
+  return datagram.size() > kTagLengthAt && datagram[kTagLengthAt] != std::byte{0};
+}
+
 std::array<std::uint8_t, 16> page_token(const Key& key) noexcept {
   return hashed<16>(std::as_bytes(std::span(kPageLabel)), key.bytes);
 }
@@ -74,7 +78,8 @@ bool equal_in_constant_time(std::string_view a, std::string_view b) noexcept {
 Cookie Cookies::in_period(std::int64_t period, const Nonce& client, const Endpoint& from) const noexcept {
   std::array<std::byte, 64> message;
   Writer writer(message);
-  writer(period), writer(from.address), writer(from.port), writer(static_cast<std::uint8_t>(from.v6));
+  writer(period), writer(renewals_), writer(from.address), writer(from.port),
+      writer(static_cast<std::uint8_t>(from.v6));
   writer(client);
   const auto hash = hashed<16>({message.data(), writer.size()}, secret_);
   Cookie cookie;

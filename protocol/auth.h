@@ -30,6 +30,8 @@ std::size_t seal(std::span<std::byte> out, std::size_t size, const Key& key) noe
 /// True if the tag of a datagram that `decode` accepted is that of `key`, compared in constant time; without
 /// a key always true.
 bool authentic(std::span<const std::byte> datagram, const Key& key) noexcept;
+/// True if a datagram says that it has a tag, of whatever key.
+bool is_tagged(std::span<const std::byte> datagram) noexcept;
 
 /// Returns the token that ends the address of a live page, derived from a key. Only its owner may do more
 /// than watch. The server passes the key of one run (`direction_key` with a random nonce).
@@ -47,12 +49,15 @@ class Cookies {
   explicit Cookies(const Secret& secret) : secret_(secret) {}
 
   Cookie make(const Nonce& client, const Endpoint& from, Time now) const noexcept;
+  /// Makes all cookies so far worthless.
+  void renew() noexcept { ++renewals_; }
   bool valid(const Cookie& cookie, const Nonce& client, const Endpoint& from, Time now) const noexcept;
 
  private:
   Cookie in_period(std::int64_t period, const Nonce& client, const Endpoint& from) const noexcept;
 
   Secret secret_;
+  std::uint64_t renewals_ = 0;  // which the cookies are of
 };
 
 /// Bytes that nobody can predict, from the operating system.

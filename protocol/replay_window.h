@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 
 #include "protocol/link_stats.h"
@@ -52,11 +53,12 @@ class ReplayWindow {
           return false;
         }
         ++stats.began_anew;
+      } else {
+        stats.lost += ahead - 1;  // where it begins anew, nobody knows how many there were
       }
       seen_ = ahead >= 64 ? 0 : seen_ << ahead;
       seen_ |= 1;
       highest_ = sequence;
-      stats.lost += ahead - 1;
       in_order_ = true;
     } else {
       const std::uint64_t behind = highest_ - sequence;
@@ -112,10 +114,14 @@ class NewestOnly {
     }
     if (newer) {
       stray_.end_row();
-      if (newest_ > 0) stats.values_lost += number - newest_ - 1;
+      // A value takes a datagram: no more were lost than those, however far its number jumps. Where their
+      // numbers began anew, nobody knows how many there were.
+      if (newest_ > 0 && began_anew_ == stats.began_anew && sequence > sequence_)
+        stats.values_lost += std::min(number - newest_, sequence - sequence_) - 1;
     }
     newest_ = number;
     sequence_ = sequence;
+    began_anew_ = stats.began_anew;
     return true;
   }
 
@@ -125,7 +131,7 @@ class NewestOnly {
  private:
   static constexpr std::uint64_t kMaxDistance = 1 << 16;  // 131 s of ticks at 500 Hz
 
-  std::uint64_t newest_ = 0, sequence_ = 0;
+  std::uint64_t newest_ = 0, sequence_ = 0, began_anew_ = 0;
   Stray stray_;
 };
 

@@ -17,7 +17,18 @@ bool checked(const Datagram& datagram, const Key& key, LinkStats& stats) noexcep
   return false;
 }
 
+KeyMismatch mismatch_of(const Datagram& datagram) noexcept {
+  return is_tagged(datagram.bytes) ? KeyMismatch::kOtherKey : KeyMismatch::kNoTag;
+}
+
 }  // namespace
+
+/// True if an answer to a Hello is of who has our key; else notes why not.
+bool ClientSession::is_proven(const Datagram& datagram, LinkStats& stats) noexcept {
+  if (checked(datagram, hello_keys_.in, stats)) return true;
+  mismatch_ = mismatch_of(datagram);
+  return false;
+}
 
 SessionKeys ClientSession::keys_for(const Nonce& server) const noexcept {
   return {direction_key(shared_, Direction::kToClient, nonce_, server),
@@ -66,7 +77,7 @@ void ClientSession::welcomed_by(const Datagram& datagram, const Welcome& welcome
     current_.samples = {};
   }
   last_heard_ = now;
-  refused_.reset();
+  refused_.reset(), mismatch_.reset();
   if (another) {  // a new server, the first, or the one before
     std::swap(current_, departed_);
     if (current_.session != datagram.header.session)
@@ -79,7 +90,7 @@ void ClientSession::welcomed_by(const Datagram& datagram, const Welcome& welcome
 /// Without a key only: with one, a server that knows the session no more cannot say so, and silence does.
 void ClientSession::refused_by(const Datagram& datagram, const Refuse& refuse, LinkStats& stats) noexcept {
   if (answers_lately(refuse.nonce, refuse.attempt)) {
-    if (checked(datagram, hello_keys_.in, stats)) refused_ = refuse.reason;
+    if (is_proven(datagram, stats)) refused_ = refuse.reason;
   } else if (refuse.nonce == Nonce{} && !shared_ && welcomed() &&
              datagram.header.session == current_.session) {
     last_heard_.reset();  // forgotten there: ask at once
@@ -91,12 +102,12 @@ void ClientSession::refused_by(const Datagram& datagram, const Refuse& refuse, L
 const Message* ClientSession::receive(const Datagram& datagram, Time now, LinkStats& stats) noexcept {
   if (const auto* challenge = std::get_if<Challenge>(&datagram.message);
       challenge && answers_lately(challenge->nonce, challenge->attempt)) {
-    if (checked(datagram, hello_keys_.in, stats)) challenged(*challenge, stats);
+    if (is_proven(datagram, stats)) challenged(*challenge, stats);
     return nullptr;
   }
   if (const auto* welcome = std::get_if<Welcome>(&datagram.message);
       welcome && answers_lately(welcome->nonce, welcome->attempt)) {
-    if (checked(datagram, hello_keys_.in, stats)) welcomed_by(datagram, *welcome, now, stats);
+    if (is_proven(datagram, stats)) welcomed_by(datagram, *welcome, now, stats);
     return nullptr;
   }
   if (const auto* refuse = std::get_if<Refuse>(&datagram.message)) {
@@ -159,7 +170,7 @@ ServerSessions::Outcome ServerSessions::greet(const Datagram& datagram, const He
   if (shared == nullptr ||
       !authentic(datagram.bytes, direction_key(*shared, Direction::kToServer, hello.nonce, {}))) {
     stats.reject(Verdict::kTag);
-    return {};
+    return {.mismatch = mismatch_of(datagram)};
   }
   ++stats.received;
   Outcome outcome = cookies_.valid(hello.cookie, hello.nonce, from, now)
@@ -167,6 +178,8 @@ ServerSessions::Outcome ServerSessions::greet(const Datagram& datagram, const He
                         : Outcome{.answer = {{Header{}, Challenge{hello.nonce, hello.attempt,
                                                                   cookies_.make(hello.nonce, from, now)}}}};
   outcome.key = direction_key(*shared, Direction::kToClient, hello.nonce, {});
+  // It takes no answer without a tag.
+  if (!*shared && is_tagged(datagram.bytes)) outcome.mismatch = KeyMismatch::kNotExpected;
   return outcome;
 }
 
@@ -226,6 +239,7 @@ ServerSessions::Outcome ServerSessions::receive(const Datagram& datagram, const 
     if (!found->window.accept(datagram.header.sequence, stats)) return {};
     departed_ = *found;
     members_.erase(found);
+    spend_cookies();
     return {.departed = &departed_};
   }
   const auto* tool_state = std::get_if<ToolState>(&datagram.message);
@@ -250,6 +264,12 @@ ServerSessions::Outcome ServerSessions::receive(const Datagram& datagram, const 
   return {.tool_state = tool_state, .asking = tool_state};
 }
 
+/// With keys: a Hello of a session that is over, sent again by who captured it, takes no tool. Who is about
+/// to join answers one Challenge more. Without keys a stranger could so keep others from joining.
+void ServerSessions::spend_cookies() noexcept {
+  if (!keys_.empty()) cookies_.renew();
+}
+
 std::vector<ServerSessions::Member> ServerSessions::expire(Time now) {
   std::vector<Member> expired;
   std::erase_if(members_, [&](const Member& m) {
@@ -257,6 +277,7 @@ std::vector<ServerSessions::Member> ServerSessions::expire(Time now) {
     if (silent) expired.push_back(m);
     return silent;
   });
+  if (!expired.empty()) spend_cookies();
   return expired;
 }
 

@@ -16,6 +16,14 @@ struct SessionKeys {
   Key in, out;
 };
 
+/// Why a Hello, or an answer to one, is not of who has our key. For messages to people alone: anybody may
+/// have sent it.
+enum class KeyMismatch {
+  kNoTag,        ///< it was sent without a key
+  kOtherKey,     ///< of another key: another number, or other bytes
+  kNotExpected,  ///< it has a tag, and we have no key
+};
+
 /// The client's end. Asks until welcomed; asks again, without giving up what it has, when the server falls
 /// silent. With a key it obeys nothing without the tag of that key.
 class ClientSession {
@@ -45,12 +53,16 @@ class ClientSession {
   /// Why the server last said no, until it says yes.
   std::optional<RefuseReason> refused() const noexcept { return refused_; }
 
+  /// Why the newest answer to a Hello was not obeyed, until a Welcome is.
+  std::optional<KeyMismatch> mismatch() const noexcept { return mismatch_; }
+
   static constexpr Time kHelloPeriod = std::chrono::milliseconds(250);  ///< what a lost Hello costs
   static constexpr std::uint64_t kAnswered = 4;    ///< of the newest Hellos: an answer takes a second at most
   static constexpr Time kSilence = kOutage;        ///< without a sample: ask again
   static constexpr std::uint64_t kMaxSample = 24;  ///< datagrams ahead: 0.8 s at 30 steps a second
 
  private:
+  bool is_proven(const Datagram& datagram, LinkStats& stats) noexcept;
   bool heard_lately(Time now) const noexcept { return last_heard_ && now - *last_heard_ < kSilence; }
 
   /// Numbers go on where they were should a session that was left come back.
@@ -76,6 +88,7 @@ class ClientSession {
   std::optional<Time> prompted_in_period_;  // `last_hello_` when one last was
   Welcome welcome_;
   std::optional<RefuseReason> refused_;
+  std::optional<KeyMismatch> mismatch_;
   std::optional<Time> last_hello_, last_heard_;
 };
 
@@ -105,7 +118,8 @@ class ServerSessions {
     const ToolState* asking =
         nullptr;  ///< the same, or one that others overtook: the pages it asks for are wanted still
     const Telemetry* telemetry = nullptr;
-    const Member* departed = nullptr;  ///< said Bye; valid until the next call
+    std::optional<KeyMismatch> mismatch{};  ///< of a Hello whose sender will obey no answer, or gets none
+    const Member* departed = nullptr;       ///< said Bye; valid until the next call
   };
 
   /// Random numbers for a session, should one begin; `session` not 0.
@@ -140,6 +154,7 @@ class ServerSessions {
  private:
   Outcome greet(const Datagram& datagram, const Hello& hello, const Endpoint& from, Time now,
                 const Fresh& fresh, LinkStats& stats);
+  void spend_cookies() noexcept;
   Outcome admit(const Hello& hello, const Key& shared, const Endpoint& from, Time now, const Fresh& fresh);
   Outcome unknown(const Datagram& datagram, LinkStats& stats) const;
   const Key* key_of(const Datagram& datagram) const noexcept;

@@ -183,19 +183,25 @@ Endpoint UdpSocket::local_towards(const Endpoint& peer) const {
   return own;
 }
 
-std::error_code UdpSocket::answer_of(const Endpoint& peer, Time patience) {
+UdpSocket::Answer UdpSocket::answer_of(const Endpoint& peer, std::span<const std::byte> request,
+                                       Time patience) {
   asio::io_context context;
   udp::socket probe(context);
   std::error_code failed;
   probe.connect(to_asio(peer), failed);
-  if (failed) return failed;
-  probe.send(asio::buffer("", 0), 0, failed);
+  if (failed) return {failed};
+  probe.send(asio::buffer(request.data(), request.size()), 0, failed);
   pollfd answer{probe.native_handle(), POLLIN, 0};
   poll(&answer, 1, static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(patience).count()));
   int error = 0;
   socklen_t size = sizeof error;
   getsockopt(probe.native_handle(), SOL_SOCKET, SO_ERROR, &error, &size);
-  return {error, std::generic_category()};
+  Answer got{{error, std::generic_category()}};
+  if (error != 0 || answer.revents == 0) return got;
+  got.bytes.resize(kMaxDatagram);
+  const auto received = recv(probe.native_handle(), got.bytes.data(), got.bytes.size(), MSG_DONTWAIT);
+  got.bytes.resize(received > 0 ? static_cast<std::size_t>(received) : 0);
+  return got;
 }
 
 void UdpSocket::run(Doorbell& doorbell, Time timer_period, const Handlers& handlers) {

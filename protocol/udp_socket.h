@@ -45,10 +45,15 @@ class UdpSocket {
   /// where it is bound to all of them. Asks the routing table; sends nothing.
   Endpoint local_towards(const Endpoint& peer) const;
 
-  /// Sends an empty datagram, and returns what the network says to it within `patience`: that nothing listens
-  /// at that port (ECONNREFUSED), that a firewall or router rejects it, or that there is no way. No error: it
-  /// says nothing, as where a datagram arrives, or is dropped.
-  static std::error_code answer_of(const Endpoint& peer, Time patience);
+  /// Answer to one datagram.
+  struct Answer {
+    std::error_code error{};         ///< of the network
+    std::vector<std::byte> bytes{};  ///< of the peer; empty: none
+  };
+  /// Sends one datagram, and returns what answers it within `patience`. The network says that nothing listens
+  /// at that port (ECONNREFUSED), that a firewall or router rejects it, or that there is no way; it says
+  /// nothing where a datagram arrives, or is dropped.
+  static Answer answer_of(const Endpoint& peer, std::span<const std::byte> request, Time patience);
 
   /// Returns when the kernel had the datagram that `on_datagram` is being called with. Thread of `run`.
   Time arrived() const noexcept;

@@ -1,6 +1,8 @@
 #include "haptic_client/commands/commtest.h"
 
+#include <algorithm>
 #include <fmt/core.h>
+#include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -46,16 +48,29 @@ double percent(double part, double entire) {
 }
 
 /// The law is the one that was at work, which need not be the one asked for.
-TestedLink tested_link(const Json& tool, double seconds) {
+TestedLink tested_link(const Json& tool, const LinkProbe::Figures& probe, double seconds) {
   const Json& link = tool["link"];
   const double came = tool["force"]["samples"].get<double>(), lost = link["values_lost"].get<double>();
+  constexpr double kHeaders = 28;  // bytes of IPv4 and UDP, of each datagram
+  const double loss = percent(lost, lost + came);
+  // Round trips lose both ways, samples one.
+  const double round_trips = percent(static_cast<double>(probe.lost), static_cast<double>(probe.sent));
+  const double uplink = 100 - 100 * std::min(1.0, (100 - round_trips) / std::max(100 - loss, 1.0));
   return {.law = tool["rendered"]["law"].get<std::string>(),
           .age_p99_ms = link["age_ms"]["p99"].get<double>(),
           .stiffest_n_m = link["stiffest_n_m"].get<double>(),
           .samples_hz = came / seconds,  // of all the time, so that a server that went silent shows
           .rate_hz = tool["link"]["rate_hz"].get<double>(),
-          .loss_percent = percent(lost, lost + came),
-          .connected = came > 0};
+          .loss_percent = loss,
+          .connected = came > 0,
+          .longest_gap_ms = link["longest_gap_ms"].get<double>(),
+          .gaps = link["gaps"].get<std::uint64_t>(),
+          .faded = tool["safety"]["ramped"].get<std::uint64_t>(),
+          .sent_mbit_s =
+              8e-6 * (link["bytes_up"].get<double>() + kHeaders * link["sent"].get<double>()) / seconds,
+          .uplink_loss_percent = uplink,
+          .surface_named = link["surfaces"].get<std::uint64_t>() > 0,
+          .pages = tool["force"]["surface_pages"].get<std::uint64_t>()};
 }
 
 void print_round_trip(const Json& trip) {
@@ -73,9 +88,13 @@ void print_session(const Json& tool, double seconds) {
   fmt::print(
       "  age         {} when a sample came, since its tool was read: way there, wait, step, way back\n",
       quantiles_text(link["age_ms"], "ms"));
-  fmt::print("  bytes       {:.1f} kB/s up, {:.1f} kB/s down, {:.1f} kB in the first second\n",
-             1e-3 * link["bytes_up"].get<double>() / seconds,
-             1e-3 * link["bytes_down"].get<double>() / seconds,
+  fmt::print(
+      "  gaps        {} of more than 100 ms between samples, the longest {:.0f} ms; the force faded {} "
+      "times\n",
+      link["gaps"].get<long>(), link["longest_gap_ms"].get<double>(), tool["safety"]["ramped"].get<long>());
+  fmt::print("  bytes       {:.0f} kbit/s up, {:.0f} kbit/s down, {:.1f} kB in the first second\n",
+             8e-3 * link["bytes_up"].get<double>() / seconds,
+             8e-3 * link["bytes_down"].get<double>() / seconds,
              1e-3 * link["bytes_down_first_second"].get<double>());
   const Json& itself = link["first_itself_s"];
   fmt::print("  law         \"{}\"{}; {} pages of the surface came\n", tool["method"].get<std::string>(),
@@ -123,15 +142,17 @@ int test_link(const ClientConfig& requested, const CommtestOptions& options) {
   tool.stop();
   probe.stop();
   const Json of_tool = tool.report();
-  const Verdict verdict = judge(tested_link(of_tool, seconds));
-  const Json report = {{"server", config.server},
-                       {"seconds", seconds},
-                       {"round_trip", probe_report(probe.figures())},
-                       {"tool", of_tool},
-                       {"verdict",
-                        {{"grade", name_of(verdict.grade)},
-                         {"reasons", verdict.reasons},
-                         {"what_to_check", link_causes(tool.local())}}}};
+  const TestedLink tested = tested_link(of_tool, probe.figures(), seconds);
+  const Verdict verdict = judge(tested);
+  std::vector<std::string> causes = remedies(tested);
+  std::ranges::copy(link_causes(tool.local()), std::back_inserter(causes));
+  const Json report = {
+      {"server", config.server},
+      {"seconds", seconds},
+      {"round_trip", probe_report(probe.figures())},
+      {"tool", of_tool},
+      {"verdict",
+       {{"grade", name_of(verdict.grade)}, {"reasons", verdict.reasons}, {"what_to_check", causes}}}};
   fmt::print("haptic_client: link to {}\n", config.server);
   print_round_trip(report["round_trip"]);
   print_session(of_tool, seconds);

@@ -33,6 +33,10 @@ constexpr std::array<Row, 11> kRows{{
 }};
 constexpr double kDirect = 14220;  // N/m: what the true force at 500 Hz keeps stable, and no law exceeds
 
+constexpr double kMostLoss = 5;  // %
+// Rank, Shi, Mueller and Hirche: from when a delay of the force is noticed, ms.
+constexpr double kNoticedInDamper = 15, kNoticedInSpring = 36;
+
 void worsen(Verdict& verdict, Grade grade, std::string reason) {
   verdict.grade = std::max(verdict.grade, grade);
   verdict.reasons.push_back(std::move(reason));
@@ -64,18 +68,61 @@ void judge_stiffness(const TestedLink& link, Verdict& verdict) {
   }
 }
 
+void judge_ages(const TestedLink& link, Verdict& verdict) {
+  const double fades_ms = 1e3 * to_seconds(kOutage);
+  if (link.age_p99_ms > fades_ms) {
+    worsen(verdict, Grade::kFail,
+           fmt::format("samples are older than the {:.0f} ms at which the force fades", fades_ms));
+  } else if (link.age_p99_ms > kNoticedInSpring) {
+    worsen(
+        verdict, Grade::kWarn,
+        fmt::format("a hand notices that a force is late from {:.0f} ms on in a spring and from {:.0f} ms on "
+                    "in a damper; samples are {:.0f} ms old",
+                    kNoticedInSpring, kNoticedInDamper, link.age_p99_ms));
+  } else if (link.age_p99_ms > kNoticedInDamper) {
+    worsen(verdict, Grade::kPass,
+           fmt::format("a hand notices in a damper alone that a force is {:.0f} ms late", link.age_p99_ms));
+  }
+  if (link.gaps == 0) return;
+  worsen(verdict, link.longest_gap_ms > fades_ms ? Grade::kFail : Grade::kWarn,
+         fmt::format(
+             "no sample came for more than 100 ms {} times, once for {:.0f} ms; the force faded {} times "
+             "(it fades after {:.0f} ms)",
+             link.gaps, link.longest_gap_ms, link.faded, fades_ms));
+}
+
+void judge_losses(const TestedLink& link, Verdict& verdict) {
+  if (link.surface_named && link.pages == 0) {
+    worsen(verdict, Grade::kFail,
+           fmt::format("\"{}\" needs pages of the surface, and none came: datagrams of 937 bytes do not get "
+                       "through, so that a law without them stood in",
+                       link.law));
+  }
+  if (link.loss_percent > kMostLoss) {
+    worsen(verdict, Grade::kWarn,
+           fmt::format("{:.1f} % of the samples were lost (the laws bridge one, not many in a row)",
+                       link.loss_percent));
+  }
+  if (link.uplink_loss_percent > kMostLoss) {
+    worsen(verdict, Grade::kWarn,
+           fmt::format("your uplink carries {:.2g} of the {:.2g} Mbit/s that are sent",
+                       link.sent_mbit_s * (1 - 0.01 * link.uplink_loss_percent), link.sent_mbit_s));
+  }
+  if (link.rate_hz > 0 && link.samples_hz < 0.9 * link.rate_hz) {
+    worsen(verdict, Grade::kWarn,
+           fmt::format("{:.1f} samples a second came, where the server aims for {:g}", link.samples_hz,
+                       link.rate_hz));
+  }
+}
+
 }  // namespace
 
 std::optional<double> stable_to(std::string_view law, double age_ms) {
   const auto row = std::ranges::find_if(kRows, [&](const Row& r) { return r.law == law; });
   if (row == kRows.end() || age_ms > kAges.back()) return {};
   double least = kDirect;
-  for (std::size_t i = 0; i < kAges.size(); ++i) {
-    // The two ages around it, and none further away: not every law gets worse with each of them.
-    const bool below = i + 1 == kAges.size() || kAges[i + 1] > age_ms,
-               above = i == 0 || kAges[i - 1] < age_ms;
-    if (below && above) least = std::min(least, row->stable_to[i]);
-  }
+  for (std::size_t i = 0; i < kAges.size() && (i == 0 || kAges[i - 1] < age_ms); ++i)
+    least = std::min(least, row->stable_to[i]);
   return least;
 }
 
@@ -83,22 +130,32 @@ Verdict judge(const TestedLink& link) {
   Verdict verdict;
   if (!link.connected) return {Grade::kFail, {"no session"}};
   judge_stiffness(link, verdict);
-  const double fades_ms = 1e3 * to_seconds(kOutage);
-  if (link.age_p99_ms > fades_ms) {
-    worsen(verdict, Grade::kFail,
-           fmt::format("samples are older than the {:.0f} ms at which the force fades", fades_ms));
-  }
-  if (link.loss_percent > 5) {
-    worsen(verdict, Grade::kWarn,
-           fmt::format("{:.1f} % of the samples were lost (the laws bridge one, not many in a row)",
-                       link.loss_percent));
-  }
-  if (link.rate_hz > 0 && link.samples_hz < 0.9 * link.rate_hz) {
-    worsen(verdict, Grade::kWarn,
-           fmt::format("{:.1f} samples a second came, where the server aims for {:g}", link.samples_hz,
-                       link.rate_hz));
-  }
+  judge_ages(link, verdict);
+  judge_losses(link, verdict);
   return verdict;
+}
+
+std::vector<std::string> remedies(const TestedLink& link) {
+  std::vector<std::string> all;
+  const bool bursts = link.gaps > 0, narrow = link.uplink_loss_percent > kMostLoss && !bursts;
+  if (narrow)
+    all.push_back(
+        "the way to the server loses datagrams: give the client a lower `rate_hz`, or use a link that "
+        "carries "
+        "more");
+  if (bursts)
+    all.push_back(
+        "samples stay out in bursts, as on a radio link or behind traffic of others: use a cable, or a "
+        "network "
+        "of its own");
+  if (link.loss_percent > kMostLoss && !bursts)
+    all.push_back("single samples are lost on the way back: use a cable, or look for a bad one");
+  if (link.age_p99_ms > kNoticedInSpring && !bursts)
+    all.push_back(
+        "samples are late without being lost: a long way, a queue on it (end other traffic), or a server "
+        "that "
+        "steps slowly (`sim_server explain SCENE`); a softer scene needs less");
+  return all;
 }
 
 const char* name_of(Grade grade) {

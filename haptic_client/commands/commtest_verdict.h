@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -8,7 +9,8 @@ namespace palpate::client {
 
 /// How stiff a wall each law keeps stable, by the age of its samples: the least over linear and Hertzian
 /// walls and three hands, at 30 samples a second with passivity, of `studies stability --by-delay` (5 seeds,
-/// within 5 %). Between two ages the smaller one; beyond the last: not known. N/m.
+/// within 5 %). The least up to the next age of the study, so that a longer age never gives a higher limit,
+/// as the walls of the study happen to; beyond the last: not known. N/m.
 std::optional<double> stable_to(std::string_view law, double age_ms);
 
 /// What a test of a link measured, of which a verdict is made.
@@ -19,6 +21,12 @@ struct TestedLink {
   double samples_hz = 0, rate_hz = 0;  ///< that came; that the server aims for, 0: as fast as it can
   double loss_percent = 0;             ///< of samples
   bool connected = false;
+  double longest_gap_ms = 0;          ///< between two samples
+  std::uint64_t gaps = 0, faded = 0;  ///< longer than 100 ms; times that the force faded
+  double sent_mbit_s = 0;             ///< with the headers of IP and UDP
+  double uplink_loss_percent = 0;     ///< of datagrams to the server
+  bool surface_named = false;         ///< by samples, for a law that requests it
+  std::uint64_t pages = 0;            ///< of the surface that came
 };
 
 enum class Grade { kPass, kWarn, kFail };
@@ -29,9 +37,14 @@ struct Verdict {
       reasons;  ///< sentences; the first says what law, age and stiffness the grade is of
 };
 
-/// FAIL: no session, ages at which the force fades (300 ms), or a stiffness above what the law keeps stable.
-/// WARN: within a factor of two of it, more than 5 % of samples lost, or fewer than 90 % of those aimed for.
+/// FAIL: no session, ages or gaps at which the force fades (300 ms), a surface whose pages never come, or a
+/// stiffness above what the law keeps stable. WARN: within a factor of two of it, ages above 36 ms, which a
+/// hand notices in a spring (Rank et al.), gaps above 100 ms, more than 5 % of datagrams lost either way, or
+/// fewer than 90 % of the samples aimed for.
 Verdict judge(const TestedLink& link);
+
+/// Returns what of the link is to blame for the verdict, and what helps; a sentence each.
+std::vector<std::string> remedies(const TestedLink& link);
 
 const char* name_of(Grade grade);
 

@@ -183,6 +183,10 @@ Json HeldTool::report() const {
   tool["loop"] = loop_report(rate_of(config_), loop_.stats());
   tool["loop"]["real_time"] = real_time_;
   tool["link"] = link_report(link_);
+  const LinkFigures& figures = link_.figures();
+  tool["link"]["gaps"] = figures.gaps;
+  tool["link"]["longest_gap_ms"] = 1e3 * to_seconds(figures.longest_gap);
+  tool["link"]["surfaces"] = figures.surfaces;
   tool["link"]["rate_hz"] = link_.session().welcome().rate_hz;
   const PipelineStats& stats = pipeline_.stats();
   tool["link"]["first_itself_s"] = stats.first_itself > Time{}

@@ -12,6 +12,12 @@ void LinkFigures::received(std::size_t bytes, Time now) noexcept {
 }
 
 void LinkFigures::sample(const ForceSample& sample, Time now) noexcept {
+  if (samples > 0) {
+    longest_gap = std::max(longest_gap, now - newest_sample);
+    gaps += now - newest_sample > kGap ? 1 : 0;
+  }
+  newest_sample = now;
+  surfaces += (sample.flags & ForceSample::kHasSurface) != 0 ? 1 : 0;
   ++samples;
   const std::int64_t age = now.count() - sample.tool_t_ns;
   if (age >= 0) age_ns.add(age);

@@ -13,7 +13,12 @@ struct LinkFigures {
   std::uint64_t bytes_up = 0, bytes_down = 0;  ///< of UDP's payload
   std::uint64_t early_bytes_down = 0;          ///< of these, in the first second after the first
   Time began{}, newest_page{};                 ///< when the first datagram, and the newest page, came
+  Time newest_sample{}, longest_gap{};         ///< when it came; between two samples that came
+  std::uint64_t gaps = 0;                      ///< of more than `kGap`
+  std::uint64_t surfaces = 0;                  ///< samples that name a surface, so that its pages can come
   double stiffest = 0;  ///< N/m: of all samples in contact, how much force a metre into the surface makes
+
+  static constexpr Time kGap = std::chrono::milliseconds(100);  ///< three samples at 30 Hz
 
   void sent(std::size_t bytes) noexcept { bytes_up += bytes; }
   void received(std::size_t bytes, Time now) noexcept;

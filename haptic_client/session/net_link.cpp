@@ -51,11 +51,12 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
       recorder_->note_refused(t, from, own_, bytes);
     }
   }
-  figures_.received(bytes.size(), socket_.arrived());
+  if (stats_.received > received) figures_.received(bytes.size(), socket_.arrived());
   if (message != nullptr) pass_on(*message, socket_.arrived());
   if (std::exchange(session_number_, session_.number()) != session_.number()) release();
   welcomed = session_.welcomed();
   refused = session_.refused() ? static_cast<int>(*session_.refused()) : 0;
+  if (const auto mismatch = session_.mismatch()) key_mismatch = static_cast<int>(*mismatch);
   greet();
 }
 

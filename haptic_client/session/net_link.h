@@ -33,6 +33,8 @@ class NetLink {
   std::atomic<int> refused{0};
   /// The version of the protocol that the server speaks, if that is not ours.
   std::atomic<int> other_version{0};
+  /// The `protocol::KeyMismatch` of the newest answer that was not of who has our key; -1: none came.
+  std::atomic<int> key_mismatch{-1};
   /// `errno` of the newest datagram, if the system would not send it: there is no way to the server.
   std::atomic<int> unsendable{0};
 

@@ -5,6 +5,7 @@
 #include "protocol/udp_socket.h"
 
 namespace palpate::client {
+using protocol::UdpSocket;
 
 protocol::Endpoint server_of(const ClientConfig& config) {
   const protocol::Endpoint server = protocol::resolve(config.server, config.server_where);
@@ -17,6 +18,39 @@ protocol::Endpoint server_of(const ClientConfig& config) {
 protocol::Key key_of(const ClientConfig& config) {
   return config.key ? protocol::read_keys(*config.key).back() : protocol::Key{};
 }
+
+namespace {
+
+/// A Hello of a version that there is not: every server answers it, also one with other keys, with the
+/// version that it speaks.
+UdpSocket::Answer answer_to_no_version(const protocol::Endpoint& server) {
+  std::array<std::byte, protocol::kMaxDatagram> bytes;
+  const std::size_t size = protocol::encode({}, protocol::Hello{}, bytes);
+  bytes[protocol::kVersionAt] = std::byte{0};
+  return UdpSocket::answer_of(server, {bytes.data(), size}, std::chrono::milliseconds(500));
+}
+
+bool is_server(const UdpSocket::Answer& answer) {
+  protocol::Datagram datagram;
+  return protocol::decode(answer.bytes, datagram) == protocol::Verdict::kAccepted &&
+         std::holds_alternative<protocol::Refuse>(datagram.message);
+}
+
+/// Fails where an answer came that is not of who has our key.
+void fail_mismatched(const NetLink& link, const ClientConfig& config) {
+  if (link.key_mismatch == static_cast<int>(protocol::KeyMismatch::kNoTag)) {
+    fail_at_run_time(
+        "the server at {} answers without a key, so nothing of it is obeyed: start it with the same key "
+        "(--key FILE) as {} here, or both without one",
+        config.server, config.key->string());
+  }
+  if (link.key_mismatch == static_cast<int>(protocol::KeyMismatch::kOtherKey)) {
+    fail_at_run_time("the server at {} answers with another key than {}: copy its key file here (scp -p)",
+                     config.server, config.key->string());
+  }
+}
+
+}  // namespace
 
 void fail_unanswered(const NetLink& link, const ClientConfig& config, const std::string& name, Time waited) {
   if (link.refused == static_cast<int>(protocol::RefuseReason::kNoFreeTool)) {
@@ -37,12 +71,21 @@ void fail_unanswered(const NetLink& link, const ClientConfig& config, const std:
         "nothing can be sent to {}: {}; is the address right, and this machine in the same network?",
         config.server, std::generic_category().message(reason));
   }
-  if (const std::error_code answer =
-          protocol::UdpSocket::answer_of(server_of(config), std::chrono::milliseconds(200))) {
-    const bool refused = answer == std::errc::connection_refused;
-    fail_at_run_time("{}nothing listens at {} ({}): {}", name, config.server, answer.message(),
+  fail_mismatched(link, config);
+  const UdpSocket::Answer answer = answer_to_no_version(server_of(config));
+  if (answer.error) {
+    const bool refused = answer.error == std::errc::connection_refused;
+    fail_at_run_time("{}nothing listens at {} ({}): {}", name, config.server, answer.error.message(),
                      refused ? "start `sim_server run` there, or give the port that it listens at"
                              : "a router or firewall on the way rejects it; open UDP there");
+  }
+  if (is_server(answer)) {
+    fail_at_run_time(
+        "the server at {} is there, and answers nothing {}: copy its key file here (scp -p), and give it "
+        "with --key FILE",
+        config.server,
+        config.key ? fmt::format("to the key in {}, so it has another key", config.key->string())
+                   : "without its key");
   }
   fail_at_run_time(
       "no answer from a server at {} within {:g} s; is `sim_server run` up, {}and UDP open there?",

@@ -1,5 +1,7 @@
 #include "sim_server/commands/run_news.h"
 
+#include <algorithm>
+
 #include "common/log.h"
 
 namespace palpate::sim {
@@ -7,9 +9,10 @@ namespace palpate::sim {
 RunEvents::RunEvents(const Scene& scene)
     : scene_(scene), held_(scene.tools.size(), false), beyond_(scene.tools.size(), false) {}
 
-void RunEvents::report(const NetLink& link, const SimLoop& loop, bool paused) {
+void RunEvents::report(NetLink& link, const SimLoop& loop, bool paused) {
   report_paused(paused);
   report_holders(link, paused);
+  report_mismatch(link);
   report_beyond(loop);
   report_end(loop);
 }
@@ -31,6 +34,29 @@ void RunEvents::report_holders(const NetLink& link, bool paused) {
                          : fmt::format("the client is gone; {} is free", tool));
     held_[i] = held;
   }
+}
+
+/// Says that somebody's Hello is of another key; of each kind once a minute, as strangers send what they
+/// like.
+void RunEvents::report_mismatch(NetLink& link) {
+  constexpr int kCallsPerMinute = 600;
+  constexpr std::array kTexts{
+      "says Hello without a key, and gets no answer: copy the key file of this server there (scp -p), and "
+      "give "
+      "it with --key FILE",
+      "says Hello with another key than this server has, and gets no answer: copy the key file of this "
+      "server "
+      "there (scp -p)",
+      "says Hello with a key, and obeys no answer of this server, which has none: start both with the same "
+      "key "
+      "(--key FILE), or both without"};
+  for (int& calls : unsaid_) calls = std::max(calls - 1, 0);
+  NetLink::Mismatch newest;
+  if (!link.mismatch.read(newest)) return;
+  const auto kind = static_cast<std::size_t>(newest.why);
+  if (unsaid_[kind] > 0) return;
+  unsaid_[kind] = kCallsPerMinute;
+  log::warning("a client at {} {}", protocol::to_string(newest.from), kTexts[kind]);
 }
 
 /// Says, once for each tool, that it left what the scene says it stays in.

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <vector>
 
 #include "sim_server/cutting/resection.h"
@@ -14,17 +15,19 @@ class RunEvents {
   /// Reports on a scene, which outlives this.
   explicit RunEvents(const Scene& scene);
   /// Prints what is new since the last call.
-  void report(const NetLink& link, const SimLoop& loop, bool paused);
+  void report(NetLink& link, const SimLoop& loop, bool paused);
 
  private:
   void report_paused(bool paused);
   void report_holders(const NetLink& link, bool paused);
   void report_beyond(const SimLoop& loop);
+  void report_mismatch(NetLink& link);
   void report_end(const SimLoop& loop);
 
   const Scene& scene_;
   bool paused_ = false, at_end_ = false;
   std::vector<bool> held_, beyond_;
+  std::array<int, 3> unsaid_{};  // calls, of each kind of mismatch, until it is said again
 };
 
 }  // namespace palpate::sim

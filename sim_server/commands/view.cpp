@@ -68,7 +68,7 @@ class Rerun {
         captured_(simulation.tools()) {}
 
   void take(const protocol::ToolState& state) {
-    if (state.tool < inputs_.size()) inputs_[state.tool].path.add(state);
+    if (state.tool < inputs_.size()) inputs_[state.tool].follow(state);
   }
   /// The tool of this session is in no hand from the step on that the next answer begins.
   void release(std::uint64_t session) { departed_.insert(session); }

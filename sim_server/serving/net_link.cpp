@@ -64,6 +64,7 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
     peers_[tool] = {};
   }
   note_holders();
+  if (outcome.mismatch) mismatch.write({*outcome.mismatch, from});
   answer(outcome, from);
   if (outcome.departed != nullptr) tool_is_free(outcome.departed->tool);
   if (outcome.telemetry != nullptr && page_ != nullptr)
@@ -108,8 +109,7 @@ void NetLink::pass_on(std::uint64_t session, const protocol::ToolState& state) {
   if (input.session != session) input = {};
   input.session = session;
   input.state = state;
-  if ((state.flags & protocol::ToolState::kDeviceLost) != 0) input.path = {};  // its pose is of long ago
-  input.path.add(state);
+  input.follow(state);
   mailboxes_.tools[state.tool].input.write(input);
 }
 

@@ -23,6 +23,13 @@ class NetLink {
   /// Read when `run` has returned.
   const protocol::LinkStats& stats() const { return stats_; }
 
+  /// Somebody's Hello that is not of who has our key. For a watching thread.
+  struct Mismatch {
+    protocol::KeyMismatch why{};
+    protocol::Endpoint from{};
+  };
+  LatestValue<Mismatch> mismatch;
+
   /// Watcher of the link, for a watching thread.
   protocol::LinkWatcher watcher;
 

@@ -89,6 +89,19 @@ PublishedForce published_force(const ForceSample& sample) noexcept {
   return force;
 }
 
+void SessionInput::follow(const protocol::ToolState& newest) noexcept {
+  const auto before = path.newest();
+  const double gap =
+      before ? static_cast<double>(newest.t_ns) - static_cast<double>(before->t_ns) : 0;  // any, off the wire
+  if (gap > static_cast<double>(kGap.count()) || was_lost) {
+    ++beginnings;
+    path = {};
+  }
+  was_lost = (newest.flags & protocol::ToolState::kDeviceLost) != 0;
+  if (was_lost) path = {};  // its pose is of long ago
+  path.add(newest);
+}
+
 ServedTools::ServedTools(Simulation& simulation, const ErrorOfForce* errors)
     : simulation_(simulation),
       errors_(errors),
@@ -129,10 +142,10 @@ std::span<const ServedTools::Outcome> ServedTools::step(std::span<const SessionI
   assert(inputs.size() == holders_.size());
   bool handed_over = false;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
-    const bool enters = hand_over(i, inputs[i].session);
+    const bool handed = hand_over(i, inputs[i].session), begins = enters(i, inputs[i]);
     inputs_[i] = input_of(i, inputs[i]);
-    inputs_[i].enters = enters;
-    handed_over = handed_over || enters;
+    inputs_[i].enters = handed || begins;
+    handed_over = handed_over || handed;
     holders_[i].before = inputs[i].state;
   }
   const bool held = std::ranges::any_of(holders_, [](const Holder& h) { return h.session != 0; });
@@ -154,6 +167,15 @@ bool ServedTools::hand_over(std::size_t tool, std::uint64_t session) noexcept {
   if (session == holders_[tool].session) return false;
   holders_[tool] = {};
   holders_[tool].session = session;
+  return true;
+}
+
+/// Returns true if the path of the tool has begun anew since the last step.
+bool ServedTools::enters(std::size_t tool, const SessionInput& input) noexcept {
+  Holder& holder = holders_[tool];
+  if (holder.beginnings == input.beginnings) return false;
+  holder.beginnings = input.beginnings;
+  holder.before = {};
   return true;
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "common/force_jumps.h"
+#include "common/time.h"
 #include "protocol/messages.h"
 #include "sim_server/serving/relaxation_publisher.h"
 #include "sim_server/serving/surface_pager.h"
@@ -19,6 +20,18 @@ struct SessionInput {
   /// age.
   bool fresh = false;
   ToolPath path{};  ///< that led there; of use where contact is solved several times a step
+  /// Times that the path began anew: each time the tool enters, as if it had been lifted.
+  std::uint32_t beginnings = 0;
+
+  bool was_lost = false;  ///< the newest point of the path is that of a lost device
+
+  /// Follows the path to a state that came over a link. The path begins anew after `kGap` without a state,
+  /// and after states of a lost device: where the tool went meanwhile is not known, and the straight way may
+  /// lead through the organ.
+  void follow(const protocol::ToolState& newest) noexcept;
+
+  static constexpr Time kGap =
+      std::chrono::milliseconds(100);  ///< three steps at 30 Hz, by the client's clock
 };
 
 /// Returns the part of a sample that tells the force and how it changes nearby.
@@ -56,10 +69,12 @@ class ServedTools {
  private:
   struct Holder {
     std::uint64_t session = 0, samples = 0;
+    std::uint32_t beginnings = 0;  // of its path
     protocol::ToolState before{};  // of the step before
     protocol::ForceSample last{};
   };
   bool hand_over(std::size_t tool, std::uint64_t session) noexcept;
+  bool enters(std::size_t tool, const SessionInput& input) noexcept;
   void make_pagers();
   void follow_surface() noexcept;
   ToolInput input_of(std::size_t tool, const SessionInput& input) noexcept;

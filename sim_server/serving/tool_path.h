@@ -25,6 +25,10 @@ class ToolPath {
     ToolPose pose;
     Vec3 v_W = Vec3::Zero();  // m/s
   };
+  /// Returns the newest point; nothing before the first state.
+  std::optional<Point> newest() const noexcept {
+    return written_ > 0 ? std::optional(back(0)) : std::nullopt;
+  }
   /// Returns the point at a time from the oldest known state to the newest, linear between two of them;
   /// nothing at other times.
   std::optional<Point> at(std::int64_t t_ns) const noexcept;

@@ -79,6 +79,13 @@ bool same_origin(std::string_view origin, std::string_view host) {
   return false;
 }
 
+std::string security_policy(const std::string& host) {
+  return "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; media-src "
+         "blob:; "
+         "connect-src 'self' ws://" +
+         host + "; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+}
+
 std::string hex_token(const PageToken& bytes) {
   std::string text;
   for (const std::uint8_t byte : bytes) text += fmt::format("{:02x}", byte);

@@ -28,6 +28,10 @@ bool host_is_ours(std::string_view host, std::string_view typed);
 /// True if the page that opens a WebSocket came from this server: `origin` is http(s)://`host`.
 bool same_origin(std::string_view origin, std::string_view host);
 
+/// Content-Security-Policy of the page at `host`, a header Host: nothing from other hosts. It names the
+/// WebSocket, as "self" means that only in newer browsers.
+std::string security_policy(const std::string& host);
+
 using PageToken = std::array<std::uint8_t, 16>;
 
 /// 32 hexadecimal digits.

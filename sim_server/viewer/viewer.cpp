@@ -5,13 +5,15 @@
 #include <libwebsockets.h>
 #include <list>
 #include <netinet/tcp.h>
+#include <strings.h>
 #include <sys/socket.h>
 
 #include "common/clock.h"
 #include "common/error.h"
-#include "protocol/auth.h"
 #include "protocol/udp_socket.h"
+#include "sim_server/viewer/connections.h"
 #include "sim_server/viewer/page_files.h"
+#include "sim_server/viewer/page_requests.h"
 #include "sim_server/viewer/showing_maker.h"
 
 namespace palpate::sim {
@@ -20,9 +22,10 @@ namespace {
 constexpr const char* kLive = "palpate-view-1";
 constexpr lws_usec_t kSearchEach = 50'000;  // us: for who is quiet, for states while nothing steps
 constexpr std::size_t kChunk = 16384;       // of a file
-constexpr int kUnsent = 32768;             // bytes waiting in the system, above which a page gets nothing new
-constexpr unsigned kMostConnections = 48;  // pages, and browsers that fetch files
-constexpr int kPatience = 10;              // s, with who fetches a file, or says nothing
+constexpr int kUnsent = 32768;  // bytes waiting in the system, above which a page gets nothing new
+// libwebsockets opens no more at once: room for those that are about to be closed.
+constexpr unsigned kMostOpen = Connections::kMost + 16;
+constexpr int kPatience = 10;  // s, with who fetches a file
 
 std::string header_of(lws* wsi, lws_token_indexes which) {
   std::array<char, 512> text{};
@@ -30,12 +33,20 @@ std::string header_of(lws* wsi, lws_token_indexes which) {
   return size > 0 ? std::string(text.data(), static_cast<std::size_t>(size)) : std::string();
 }
 
-/// Nothing from other hosts. Of the WebSocket: "self" means it only in newer browsers.
-std::string security_policy(const std::string& host) {
-  return "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; media-src "
-         "blob:; "
-         "connect-src 'self' ws://" +
-         host + "; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+/// Returns the address of the other end, without its port.
+std::string address_of(lws* wsi) {
+  std::array<char, 64> text{};
+  return lws_get_peer_simple(wsi, text.data(), text.size()) != nullptr ? text.data() : "";
+}
+
+/// Ends a connection, perhaps the one that is being served, after the callback.
+void close_later(Connections::Id id) {
+  lws_set_timeout(static_cast<lws*>(const_cast<void*>(id)), PENDING_TIMEOUT_USER_REASON_BASE,
+                  LWS_TO_KILL_ASYNC);
+}
+
+bool is_websocket(const char* upgrade) {
+  return upgrade != nullptr && strcasecmp(upgrade, "websocket") == 0;
 }
 
 /// The remainder of a file that is being sent.
@@ -74,18 +85,16 @@ struct Viewer::Server {
   int send_head(lws* wsi, unsigned status, const PageFile& file, const std::string& host, bool head_only,
                 Fetch& fetch);
   int send_chunk(lws* wsi, Fetch& fetch);
+  int complete(lws* wsi);
   bool may_connect(lws* wsi) const;
   void open(lws* wsi, Page*& page);
   void on_message(Page& page, std::string_view part);
   void end(Page& page, lws_close_status why, std::string text);
-  bool obey(Page& page, const PageMessage& message);
-  void control(Page& page, const PageMessage& message);
   int send_next(Page& page);
 
   ViewerAddress address;
-  std::string token;
-  const SceneFacts& scene;
   ViewerFeed& feed;
+  PageRequests requests;
   const Bytes* session;
   ShowingMaker maker;
   std::array<lws_protocols, 3> protocols{};
@@ -93,6 +102,7 @@ struct Viewer::Server {
   std::string listens_on;  // as libwebsockets wants it, which keeps a pointer to it
   lws_context* context = nullptr;
   std::atomic<bool> stops{false};
+  Connections connections;
   std::list<Page> pages;
   Bytes sent, buffer;  // the newest message, and with room for its frame
   Timer timer;
@@ -101,9 +111,8 @@ struct Viewer::Server {
 Viewer::Server::Server(const ViewerAddress& where, std::string token_, const SceneFacts& scene_,
                        ViewerFeed& feed_, const Bytes* session_)
     : address(where),
-      token(std::move(token_)),
-      scene(scene_),
       feed(feed_),
+      requests{std::move(token_), scene_, feed_},
       session(session_),
       maker(scene_, feed_, !scene_.recorded) {
   require_free(address);
@@ -128,8 +137,8 @@ Viewer::Server::Server(const ViewerAddress& where, std::string token_, const Sce
   info.port = address.endpoint.port;
   info.protocols = protocols.data();
   info.user = this;
-  info.fd_limit_per_thread = kMostConnections;
-  info.max_http_header_pool = kMostConnections;  // with fewer, silent connections keep others waiting
+  info.fd_limit_per_thread = kMostOpen;
+  info.max_http_header_pool = kMostOpen;  // with fewer, silent connections keep others waiting
   info.timeout_secs = kPatience;
   info.keepalive_timeout = kPatience;
   info.retry_and_idle_policy = &idle;
@@ -156,13 +165,25 @@ int Viewer::Server::on_event(lws* wsi, lws_callback_reasons reason, void* user, 
     case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
       if (live) server->update();
       return 0;
+    case LWS_CALLBACK_SERVER_NEW_CLIENT_INSTANTIATED:
+      if (const auto departing = server->connections.open(wsi, address_of(wsi), now()))
+        close_later(*departing);
+      return 0;
+    case LWS_CALLBACK_WSI_DESTROY:
+      server->connections.closed(wsi);
+      return 0;
+    case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
+      // Of HTTP/2 the library makes streams that nothing here knows.
+      return is_websocket(static_cast<const char*>(in)) ? 0 : -1;
     case LWS_CALLBACK_HTTP:
+      server->connections.serve(wsi);
       return server->on_request(wsi, *static_cast<Fetch*>(user));
     case LWS_CALLBACK_HTTP_WRITEABLE:
       return server->send_chunk(wsi, *static_cast<Fetch*>(user));
     case LWS_CALLBACK_FILTER_PROTOCOL_CONNECTION:
       return live && server->may_connect(wsi) ? 0 : -1;
     case LWS_CALLBACK_ESTABLISHED:
+      server->connections.serve(wsi);
       if (live) server->open(wsi, *page);
       return live ? 0 : -1;
     case LWS_CALLBACK_RECEIVE:
@@ -209,6 +230,7 @@ void Viewer::Server::update() {
     if (page.link.greeted()) lws_callback_on_writable(page.wsi);
   }
   feed.requests_field = requests_field;
+  while (const auto silent = connections.take_silent(time)) close_later(*silent);
 }
 
 int Viewer::Server::on_request(lws* wsi, Fetch& fetch) {
@@ -251,7 +273,7 @@ int Viewer::Server::send_head(lws* wsi, unsigned status, const PageFile& file, c
   add("cross-origin-resource-policy:", "same-origin");
   if (!host.empty()) add("content-security-policy:", security_policy(host));
   if (!fits || lws_finalize_write_http_header(wsi, begin, &at, end) != 0) return -1;
-  if (head_only || file.bytes.empty()) return lws_http_transaction_completed(wsi) != 0 ? -1 : 0;
+  if (head_only || file.bytes.empty()) return complete(wsi);
   fetch = {file.bytes.data(), file.bytes.size()};
   lws_callback_on_writable(wsi);
   return 0;
@@ -265,10 +287,16 @@ int Viewer::Server::send_chunk(lws* wsi, Fetch& fetch) {
   fetch = {fetch.next + size, fetch.remaining - size};
   const auto kind = fetch.remaining == 0 ? LWS_WRITE_HTTP_FINAL : LWS_WRITE_HTTP;
   if (lws_write(wsi, reinterpret_cast<unsigned char*>(buffer.data()) + LWS_PRE, size, kind) < 0) return -1;
-  if (fetch.remaining == 0) return lws_http_transaction_completed(wsi) != 0 ? -1 : 0;
+  if (fetch.remaining == 0) return complete(wsi);
   lws_set_timeout(wsi, PENDING_TIMEOUT_HTTP_CONTENT, kPatience);
   lws_callback_on_writable(wsi);
   return 0;
+}
+
+/// Ends the answer to a request; the connection may bring another one.
+int Viewer::Server::complete(lws* wsi) {
+  connections.answered(wsi, now());
+  return lws_http_transaction_completed(wsi) != 0 ? -1 : 0;
 }
 
 bool Viewer::Server::may_connect(lws* wsi) const {
@@ -303,52 +331,11 @@ void Viewer::Server::on_message(Page& page, std::string_view part) {
   if (lws_remaining_packet_payload(page.wsi) > 0 || lws_is_final_fragment(page.wsi) == 0) return;
   if (!page.link.may_say(now())) return end(page, LWS_CLOSE_STATUS_POLICY_VIOLATION, "too many messages");
   const auto message = read_page_message(std::exchange(page.coming, {}));
-  if (!message || !obey(page, *message))
+  const bool paused = feed.paused;
+  if (!message || !requests.obey(page.link, *message))
     return end(page, LWS_CLOSE_STATUS_POLICY_VIOLATION, "no message that is known here");
+  if (feed.paused != paused) update();
   lws_callback_on_writable(page.wsi);
-}
-
-/// True if it may be said now; hello comes first, and once.
-bool Viewer::Server::obey(Page& page, const PageMessage& message) {
-  if (const auto* hello = std::get_if<PageHello>(&message)) {
-    if (page.link.greeted()) return false;
-    page.link.greet(!token.empty() && protocol::equal_in_constant_time(hello->token, token));
-    return true;
-  }
-  if (!page.link.greeted()) return false;
-  if (const auto* want = std::get_if<PageWant>(&message)) {
-    const bool known = std::ranges::find(scene.fields, want->field) != scene.fields.end();
-    if (!want->field.empty() && !known) page.link.refuse("this scene cannot be coloured by " + want->field);
-    page.link.want_field(known);
-  } else if (const auto* shown = std::get_if<PageShown>(&message)) {
-    page.link.shown(shown->step);
-  } else if (page.link.may_control()) {
-    control(page, message);
-  } else {
-    page.link.refuse("this page may only look on; who has the address with the token may do more");
-  }
-  return true;
-}
-
-void Viewer::Server::control(Page& page, const PageMessage& message) {
-  if (const auto* pause = std::get_if<PagePause>(&message)) {
-    if (!scene.pausable) return page.link.refuse("this session cannot be paused");
-    feed.steps = 0;
-    feed.paused = pause->paused;
-    update();
-  } else if (std::holds_alternative<PageStep>(message)) {
-    if (!feed.paused) return page.link.refuse("single steps are made while paused");
-    ++feed.steps;
-  } else if (const auto* pointer = std::get_if<PagePointer>(&message)) {
-    if (pointer->tool >= scene.tools.size()) return page.link.refuse("the scene has no such tool");
-    if (!feed.hooks.point) return page.link.refuse("no mouse moves a tool here");
-    page.link.pointed(*pointer);
-    feed.hooks.point(*pointer);
-  } else if (const auto* choose = std::get_if<PageChoose>(&message)) {
-    const auto found = std::ranges::find(scene.gallery, choose->scene);
-    if (found == scene.gallery.end()) return page.link.refuse("no scene of that name can be chosen here");
-    feed.chosen = static_cast<int>(found - scene.gallery.begin());
-  }
 }
 
 int Viewer::Server::send_next(Page& page) {

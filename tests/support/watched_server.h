@@ -1,7 +1,10 @@
 #pragma once
 /// A server with its live page, for tests that look at it.
 #include <fstream>
+#include <iterator>
+#include <sstream>
 #include <string>
+#include <unistd.h>
 #include <vector>
 
 #include "tests/support/paths.h"
@@ -30,6 +33,16 @@ struct Watched : Server {
     long all = 0, resident = 0;
     file >> all >> resident;
     return resident * 4;
+  }
+  /// Time of a processor that the server has taken so far, s, of all its threads.
+  double processor_s() const {
+    std::ifstream file("/proc/" + std::to_string(process.id()) + "/stat");
+    std::string all((std::istreambuf_iterator<char>(file)), {}), word;
+    std::istringstream fields(all.substr(all.rfind(')') + 2));
+    long user = 0, system = 0;
+    for (int k = 0; k < 11; ++k) fields >> word;  // from the third on, to the fourteenth
+    fields >> user >> system;
+    return static_cast<double>(user + system) / static_cast<double>(sysconf(_SC_CLK_TCK));
   }
 };
 

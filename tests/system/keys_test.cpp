@@ -65,11 +65,27 @@ TEST_CASE("keys: with the same key a session is as ever, and every datagram of t
 TEST_CASE("keys: another key, none, or one where the server has none: exit 1, and what to look at") {
   const KeyBench bench, other;
   Server keyed(bench.with_key());
-  for (const auto& more : {std::vector<std::string>{"--key", other.key}, std::vector<std::string>{}})
-    CHECK_THAT(output_of("haptic_client", client_arguments(keyed.address, more), 1), Catch::Contains("key"));
+  const auto said = [](const Server& server, const std::vector<std::string>& more) {
+    return output_of("haptic_client", client_arguments(server.address, more), 1);
+  };
+  CHECK_THAT(said(keyed, {"--key", other.key}),
+             Catch::Contains("is there, and answers nothing to the key in " + other.key +
+                             ", so it has another key"));
+  CHECK_THAT(said(keyed, {}), Catch::Contains("is there, and answers nothing without its key"));
   Server open;
-  CHECK_THAT(output_of("haptic_client", client_arguments(open.address, bench.with_key()), 1),
-             Catch::Contains("with the same key"));
+  CHECK_THAT(said(open, bench.with_key()),
+             Catch::Contains("answers without a key") && Catch::Contains("start it with the same key"));
+  // The servers say the same of their side, once each, though eight Hellos and more came.
+  keyed.process.signal(SIGINT), open.process.signal(SIGINT);
+  keyed.process.wait(), open.process.wait();
+  const auto count = [](const std::string& text, const std::string& part) {
+    int found = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+    return found;
+  };
+  CHECK(count(keyed.process.output(), "says Hello with another key") == 1);
+  CHECK(count(keyed.process.output(), "says Hello without a key") == 1);
+  CHECK(count(open.process.output(), "says Hello with a key, and obeys no answer") == 1);
 }
 
 TEST_CASE("keys: neither program leaves this machine without one, exit 2") {

@@ -263,3 +263,62 @@ TEST_CASE("who has another key of the server and another client's nonce does not
   CHECK_FALSE(other.shake_hands());  // there is one tool, and it is held
   CHECK(other.server.members().size() == 1);
 }
+
+TEST_CASE("with a key a captured Hello takes no tool again after a Bye, or once its session has expired") {
+  for (const bool bye : {true, false}) {
+    CAPTURE(bye);
+    Network n;
+    REQUIRE(n.shake_hands());
+    const std::vector<Bytes> hellos = n.up;
+    n.to_server(n.state());
+    if (bye) {
+      n.to_server(n.from_client(Bye{}));
+    } else {
+      n.now += ServerSessions::kTimeout;
+      REQUIRE(n.server.expire(n.now).size() == 1);
+    }
+    REQUIRE(n.server.members().empty());
+    for (const Bytes& hello : hellos) n.to_server(hello);
+    CHECK(n.server.members().empty());
+    // Its client gets in as ever, in the same second.
+    n.now += ClientSession::kSilence;
+    n.shake_hands();
+    CHECK(n.server.members().size() == 1);
+  }
+}
+
+TEST_CASE("without a key those who leave keep nobody from joining") {
+  ServerSessions server(30, {0.005, 0.005}, {7});
+  LinkStats stats;
+  Hello hello{.nonce = {5}};
+  const auto challenge = server.receive({{}, hello}, kClient, 100s, {1}, stats);
+  hello.cookie = std::get<Challenge>(challenge.answer->second).cookie;
+  Hello other{.nonce = {6}};
+  other.cookie =
+      std::get<Challenge>(server.receive({{}, other}, kStranger, 100s, {2}, stats).answer->second).cookie;
+  const auto joined = server.receive({{}, other}, kStranger, 100s, {2}, stats).answer;
+  REQUIRE(std::holds_alternative<Welcome>(joined->second));
+  server.receive({{joined->first.session, 1}, Bye{}}, kStranger, 100s, {}, stats);
+  CHECK(
+      std::holds_alternative<Welcome>(server.receive({{}, hello}, kClient, 100s, {3}, stats).answer->second));
+}
+
+TEST_CASE("both ends know why the other one's Hello or answer is not of their key") {
+  const auto mismatches = [](const Key& of_client, const std::vector<Key>& of_server) {
+    Network n(of_client, of_server);
+    const auto hello = n.client.poll(n.now);
+    const Bytes bytes = n.from_client(*hello);
+    Datagram datagram;
+    REQUIRE(decode(bytes, datagram) == Verdict::kAccepted);
+    const auto outcome = n.server.receive(datagram, kClient, n.now, {1}, n.server_stats);
+    if (outcome.answer) n.to_server(bytes);  // its answer reaches the client
+    return std::pair(n.client.mismatch(), outcome.mismatch);
+  };
+  using Pair = decltype(mismatches(kKey, {}));
+  CHECK(mismatches(kKey, {kKey}) == Pair{});
+  CHECK(mismatches({}, {}) == Pair{});
+  CHECK(mismatches({}, {kKey}) == Pair{std::nullopt, KeyMismatch::kNoTag});
+  CHECK(mismatches(kWrong, {kKey}) == Pair{std::nullopt, KeyMismatch::kOtherKey});
+  CHECK(mismatches(kNewer, {kKey}) == Pair{std::nullopt, KeyMismatch::kOtherKey});
+  CHECK(mismatches(kKey, {}) == Pair{KeyMismatch::kNoTag, KeyMismatch::kNotExpected});
+}

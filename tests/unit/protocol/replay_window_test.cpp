@@ -47,7 +47,26 @@ TEST_CASE("a number far ahead is taken with the fourth in a row, and one alone c
   for (const std::uint64_t there : {1000, 1001, 1010}) CHECK_FALSE(window.accept(there, stats));
   CHECK(window.accept(1011, stats));
   CHECK(stats.began_anew == 1);
+  CHECK(stats.lost == 0);  // what it says of 1000 datagrams before is not known to be so
   for (std::uint64_t i = 12; i < 30; ++i) CHECK_FALSE(window.accept(i, stats));  // never back
+}
+
+TEST_CASE("wild numbers of datagrams and values do not count as lost") {
+  ReplayWindow window(24);
+  NewestOnly newest;
+  LinkStats stats;
+  const auto come = [&](std::uint64_t sequence, std::uint64_t number) {
+    return window.accept(sequence, stats) && newest.accept(number, sequence, window.in_order(), stats);
+  };
+  for (std::uint64_t i = 1; i <= 10; ++i) CHECK(come(i, i));
+  CHECK(come(13, 60'000));  // two datagrams are missing, so at most two values are
+  CHECK(stats.lost == 2);
+  CHECK(stats.values_lost == 2);
+  constexpr std::uint64_t kWild = std::uint64_t{1} << 63;
+  for (std::uint64_t i = 0; i < 4; ++i) come(kWild + i, 60'010);
+  CHECK(stats.began_anew == 1);
+  CHECK(stats.lost == 2);
+  CHECK(stats.values_lost == 2);
 }
 
 TEST_CASE("whatever a link does to their order, values that pass the window and are newest only grow") {

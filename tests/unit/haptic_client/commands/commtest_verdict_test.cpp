@@ -44,6 +44,49 @@ TEST_CASE("commtest: between two ages of the study the smaller stiffness counts,
   CHECK(stable_to("two_tangents", 5) == 2497);
 }
 
+TEST_CASE("commtest: a longer age never gives a higher limit") {
+  for (const ExtrapolatorRow& row : extrapolators()) {
+    CAPTURE(row.name);
+    for (int age = 1; age <= 200; ++age) CHECK(*stable_to(row.name, age) <= *stable_to(row.name, age - 1));
+  }
+  // The study has 2497 N/m at 15 ms and 7735 at 83.
+  CHECK(stable_to("two_tangents", 108) == 2497);
+}
+
+TEST_CASE("commtest: ages are judged by what a hand can tell") {
+  TestedLink link = good();
+  link.age_p99_ms = 36;
+  CHECK(grade_of(link) == Grade::kPass);
+  CHECK_THAT(judge(link).reasons.back(), Catch::Contains("in a damper alone"));
+  link.age_p99_ms = 137;
+  CHECK(grade_of(link) == Grade::kWarn);
+  CHECK_THAT(judge(link).reasons.back(), Catch::Contains("137 ms old"));
+  REQUIRE(remedies(link).size() == 1);
+  CHECK_THAT(remedies(link)[0], Catch::Contains("late without being lost"));
+}
+
+TEST_CASE("commtest: bursts, pages that never come and a narrow uplink are named, with a remedy each") {
+  CHECK(remedies(good()).empty());
+  TestedLink link = good();
+  link.gaps = 3, link.longest_gap_ms = 500, link.faded = 3;
+  CHECK(grade_of(link) == Grade::kFail);
+  CHECK_THAT(judge(link).reasons.back(),
+             Catch::Contains("3 times, once for 500 ms; the force faded 3 times"));
+  CHECK_THAT(remedies(link).at(0), Catch::Contains("bursts"));
+  link.longest_gap_ms = 299;
+  CHECK(grade_of(link) == Grade::kWarn);
+  link = good();
+  link.surface_named = true;
+  CHECK(grade_of(link) == Grade::kFail);
+  link.pages = 1;
+  CHECK(grade_of(link) == Grade::kPass);
+  link = good();
+  link.sent_mbit_s = 0.8, link.uplink_loss_percent = 50;
+  CHECK(grade_of(link) == Grade::kWarn);
+  CHECK_THAT(judge(link).reasons.back(), Catch::Contains("your uplink carries 0.4 of the 0.8 Mbit/s"));
+  CHECK_THAT(remedies(link).at(0), Catch::Contains("rate_hz"));
+}
+
 TEST_CASE("commtest: a good link passes, and each fault has its grade and its reason") {
   CHECK(grade_of(good()) == Grade::kPass);
   TestedLink link = good();

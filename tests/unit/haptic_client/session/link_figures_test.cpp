@@ -27,6 +27,14 @@ TEST_CASE("link figures: the stiffness is that into the surface, of samples in c
   CHECK(figures.samples == 3);
 }
 
+TEST_CASE("link figures: gaps are times of more than 100 ms between two samples") {
+  LinkFigures figures;
+  for (const Time t : {Time{5s}, Time{5100ms}, Time{5201ms}, Time{5701ms}, Time{5734ms}})
+    figures.sample({.number = 1}, t);
+  CHECK(figures.gaps == 2);
+  CHECK(figures.longest_gap == 500ms);
+}
+
 TEST_CASE("link figures: bytes of the first second are those within a second of the first") {
   LinkFigures figures;
   figures.received(100, 5s);

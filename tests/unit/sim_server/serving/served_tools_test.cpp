@@ -93,6 +93,37 @@ TEST_CASE("served tools: a tool that changes hands does not travel from one to t
   CHECK(served.newton(1) == Approx(2).epsilon(1e-3));
 }
 
+TEST_CASE(
+    "served tools: after a gap in its states a tool enters, and does not follow the jump through the organ") {
+  Served served;
+  const auto come = [&](double t, double x, double y, std::uint16_t flags = 0) {
+    SessionInput& input = served.inputs[0];
+    input.state.t_ns = from_seconds(t).count();
+    input.state.p_W = {x, y, 0.003};
+    input.state.flags = flags;
+    input.follow(input.state);
+  };
+  // From beside the block to within: from its right, along x, the tool would hang 0.05 m deep in its side.
+  const auto jump = [&](double gap, std::uint16_t flags) {
+    for (int i = 0; i < 10; ++i) come(0.01 * i, 0.06, -0.02);
+    served.step();
+    if (flags != 0) come(0.09 + 0.5 * gap, 0.06, -0.02, flags);
+    come(0.09 + gap, 0.0, -0.003);
+    const Vec3 force = served.step()[0].force.force;
+    served.hold(0, served.inputs[0].session + 2, 0.05);
+    served.step();
+    return force;
+  };
+  const Vec3 followed = jump(0.1, 0), entered = jump(0.101, 0),
+             lost = jump(0.05, protocol::ToolState::kDeviceLost);
+  CAPTURE(followed.transpose(), entered.transpose());
+  // Entered, it stands on the nearest wall, the top: 1000 N/m, pressed by 3 mm and its radius of 5 mm.
+  CHECK(entered[1] == Approx(8).epsilon(1e-3));
+  CHECK(std::abs(entered[0]) < 1e-3);
+  CHECK((lost - entered).norm() < 1e-9);
+  CHECK((followed - entered).norm() > 1);
+}
+
 TEST_CASE("served tools: no tangent is made that nobody asked for, and the force is the same without") {
   Served asks, asks_not;
   asks.inputs[0].state.flags |= protocol::ToolState::kRequestsTangent;
