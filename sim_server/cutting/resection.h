@@ -68,6 +68,8 @@ class Resection {
   /// it cut off and that go are `removed` then.
   const Separated& part(const BladeSweep& blade, std::span<Vec3> were, std::span<Vec3> are, Surface& surface);
   std::span<const int> removed() const { return removed_; }
+  /// Returns the tetrahedra of each part that floats, as `PieceFinder::floating`. O(m).
+  std::vector<std::vector<int>> floating() const { return pieces_.floating(remaining_); }
   /// Sets the mesh vertices that do not slide onto the path of a blade, beside those that have slid.
   void keep(std::vector<int> vertices) { scalpel_->keep(std::move(vertices)); }
   /// The way over which a blade does the work of what it parts, m.

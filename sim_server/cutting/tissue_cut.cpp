@@ -67,7 +67,9 @@ bool TissueCut::start_step(std::span<const ToolInput> inputs, double time, doubl
     count(organ.tissue.traits.cuttable->remove(removed, resection_.remaining()));
     organ.tissue.note_same_place();  // of vertices that this exposed, too
   }
-  if (!options_.planned) part_by_blades(inputs, dt, organ);
+  const bool parted = !options_.planned && part_by_blades(inputs, dt, organ);
+  if ((parted || !removed.empty()) && resection_.totals().loose_pieces > 0)
+    organ.tissue.traits.cuttable->release(resection_.floating(), resection_.remaining());
   if (resection_.version() != touchable_version_) change_surface(organ);
   return publish(inputs, organ);
 }
@@ -93,8 +95,9 @@ void TissueCut::count(const CuttableModel::Removed& lost) {
   totals.momentum += lost.momentum;
 }
 
-/// Parts tissue along the path of the blades in the step before.
-void TissueCut::part_by_blades(std::span<const ToolInput> inputs, double dt, CutOrgan& organ) {
+/// Parts tissue along the path of the blades in the step before. Returns true if that changed any.
+bool TissueCut::part_by_blades(std::span<const ToolInput> inputs, double dt, CutOrgan& organ) {
+  bool parted = false;
   for (std::size_t i = 0; i < tools_.size(); ++i) {
     std::optional<Blade>& blade = blades_[i];
     if (!tools_[i].blade) continue;
@@ -106,7 +109,7 @@ void TissueCut::part_by_blades(std::span<const ToolInput> inputs, double dt, Cut
     const ToolPose& pose = contact.pose();
     blade->is = {pose.p_W, pose.p_W + pose.q_W * *tools_[i].blade};
     if (blade->was) {
-      part_by(i, dt, organ);
+      parted |= part_by(i, dt, organ);
       if (!cuts) blade->was.reset();  // that was the path before it was released
     } else if (cuts) {
       blade->trail.setZero();
@@ -114,9 +117,10 @@ void TissueCut::part_by_blades(std::span<const ToolInput> inputs, double dt, Cut
       blade->were.assign(organ.tissue.positions.begin(), organ.tissue.positions.end());
     }
   }
+  return parted;
 }
 
-void TissueCut::part_by(std::size_t tool, double dt, CutOrgan& organ) {
+bool TissueCut::part_by(std::size_t tool, double dt, CutOrgan& organ) {
   Blade& blade = *blades_[tool];
   std::vector<Vec3> are(organ.tissue.positions.begin(), organ.tissue.positions.end());
   std::vector<int> touched;  // by others: a vertex in a grip does not slide
@@ -128,18 +132,19 @@ void TissueCut::part_by(std::size_t tool, double dt, CutOrgan& organ) {
   resection_.keep(std::move(touched));
   const Separated& separated =
       resection_.part({*blade.was, blade.is, blade.trail}, blade.were, are, organ.surface);
-  if (!separated.stroke.moved) return;
+  if (!separated.stroke.moved) return false;
   if (separated.stroke.at_end) resection_.totals().time_at_end += dt;
   blade.was = blade.is;
   blade.trail = separated.stroke.trail;
   blade.were = std::move(are);
   blade.debt += toughness_ * separated.area;
   follow_rest(separated, tool, organ);
-  if (separated.stroke.slides.empty() && separated.stroke.faces.empty()) return;
+  if (separated.stroke.slides.empty() && separated.stroke.faces.empty()) return false;
   organ.tissue.traits.cuttable->part(separated.stroke.slides, separated.parting, resection_.remaining());
   organ.tissue.note_same_place();
   if (!resection_.removed().empty())
     count(organ.tissue.traits.cuttable->remove(resection_.removed(), resection_.remaining()));
+  return true;
 }
 
 /// Moves the rest places of vertices that slid or became two, and, of the other blades, their places at the

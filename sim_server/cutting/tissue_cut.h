@@ -91,8 +91,8 @@ class TissueCut {
   bool is_hot(std::size_t tool, const ToolContact& contact, const ToolInput& input) const;
   std::span<const int> remove_by_heat(std::span<const ToolInput> inputs, double dt, CutOrgan& organ);
   std::span<const int> remove_planned(double time, CutOrgan& organ);
-  void part_by_blades(std::span<const ToolInput> inputs, double dt, CutOrgan& organ);
-  void part_by(std::size_t tool, double dt, CutOrgan& organ);
+  bool part_by_blades(std::span<const ToolInput> inputs, double dt, CutOrgan& organ);
+  bool part_by(std::size_t tool, double dt, CutOrgan& organ);
   void follow_rest(const Separated& separated, std::size_t tool, CutOrgan& organ);
   void change_surface(CutOrgan& organ);
   bool publish(std::span<const ToolInput> inputs, CutOrgan& organ);

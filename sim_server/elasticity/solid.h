@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "sim_server/elasticity/floating_pieces.h"
 #include "sim_server/elasticity/laws.h"
 #include "sim_server/elasticity/material.h"
 #include "sim_server/mesh/tet_mesh.h"
@@ -67,7 +68,8 @@ class Solid {
   /// Adds the forces (nodes, N) of a force per volume (N/m^3), as the shape functions say.
   void add_body_forces(const Vec3& per_volume, std::span<Vec3> f) const;
   /// Computes the rotation of each node at positions `x` (nodes, m): the rotation nearest to the mean of the
-  /// deformation gradients around it, by volume. O(elements); allocates.
+  /// deformation gradients around it, by volume; of the linear law that of its floating piece, or none.
+  /// O(elements); allocates.
   void node_rotations(std::span<const Vec3> x, std::span<Mat3> rotations) const;
   /// Lumped mass of each node, kg: a quarter of a tetrahedron for each vertex; of ten nodes 1/36 for a corner
   /// and 4/27 for the middle of an edge (Hinton, Rock and Zienkiewicz 1976).
@@ -78,6 +80,11 @@ class Solid {
   /// Updates these tetrahedra to their corners in `mesh`, and to their rest positions there: other corners
   /// than before, of equal number, or moved ones. Of linear elements.
   void reshape(const TetMesh& mesh, std::span<const int> tetrahedra);
+  /// Lets these parts (tetrahedra of each) float, all else is held: the linear law acts in the frame of each
+  /// (`FloatingPieces`). Other laws know turns, and ignore this. O(elements).
+  void release(std::span<const std::vector<int>> parts);
+  /// True if the stiffness turns with the body: not of the linear law, but in floating pieces.
+  bool turns() const { return material_.law != ElasticLaw::kLinear || !floating_.empty(); }
   bool is_removed(std::size_t e) const { return weight_[e * static_cast<std::size_t>(points_)] == 0; }
   /// Elastic energy of one tetrahedron, J.
   double energy_of(std::size_t e, std::span<const Vec3> x) const;
@@ -130,6 +137,9 @@ class Solid {
   void add_nodal_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, double scale) const;
   void collect_terms(std::size_t a, std::span<const Vec3> along,
                      std::vector<std::pair<int, Vec3>>& terms) const;
+  void sum_forces(std::span<const Vec3> x, std::span<Vec3> f, const Viscosity& viscosity,
+                  Scratch& scratch) const;
+  class TurnedBack;
 
   Material material_;
   int corners_ = 4, points_ = 1;  // nodes and quadrature points of an element
@@ -141,6 +151,7 @@ class Solid {
   // Only for averaged dilation: the tetrahedra around each vertex, and its share of their volume.
   std::vector<int> around_, around_first_;
   std::vector<double> nodal_volume_;
+  FloatingPieces floating_;  // only of the linear law
 };
 
 /// Work memory of `Solid`: made once for a body and a thread, it saves each call the allocation.

@@ -5,6 +5,7 @@
 #include "sim_server/elasticity/rotations.h"
 #include "sim_server/elasticity/solid.h"
 #include "sim_server/elasticity/solid_element.h"
+#include "sim_server/elasticity/turned_back.h"
 
 namespace palpate::sim {
 namespace {
@@ -63,8 +64,10 @@ void Solid::average_dilation(std::span<const Vec3> x, Scratch& scratch) const {
   }
 }
 
-void Solid::evaluate(std::span<const Vec3> x, std::span<State> at_points, const Viscosity& viscosity,
+void Solid::evaluate(std::span<const Vec3> positions, std::span<State> at_points, const Viscosity& viscosity,
                      Scratch& scratch) const {
+  const TurnedBack turned(*this, positions);
+  const std::span<const Vec3> x = turned.x();
   if (averages()) average_dilation(x, scratch);
   with_law(material_.law, [&]<class Law>() {
     const Moduli moduli = Law::moduli(material_);
@@ -96,6 +99,14 @@ void Solid::evaluate(std::span<const Vec3> x, std::span<State> at_points, const 
 }
 
 void Solid::node_rotations(std::span<const Vec3> x, std::span<Mat3> rotations) const {
+  if (material_.law == ElasticLaw::kLinear) {
+    const TurnedBack turned(*this, x);
+    for (int i = 0; i < nodes(); ++i) {
+      const Mat3* const R = turned.rotation(i);
+      rotations[static_cast<std::size_t>(i)] = R != nullptr ? *R : Mat3(Mat3::Identity());
+    }
+    return;
+  }
   std::vector<Mat3> sums(rest_.size(), Mat3::Zero());
   each_element<LinearLaw>(x, 0, elements(), [&](const Element& element, const Mat3* F, const Mat3*) {
     for (int q = 0; q < points_; ++q) {
@@ -115,7 +126,9 @@ FibreLaw Solid::fibre_law(const Mat3& F) const {
   return {material_.fibres->modulus, material_.fibres->direction, F, material_.law == ElasticLaw::kLinear};
 }
 
-double Solid::energy_of(std::size_t e, std::span<const Vec3> x) const {
+double Solid::energy_of(std::size_t e, std::span<const Vec3> positions) const {
+  const TurnedBack turned(*this, positions);
+  const std::span<const Vec3> x = turned.x();
   double energy = 0;
   with_law(material_.law, [&]<class Law>() {
     const Moduli moduli = Law::moduli(material_);
@@ -141,6 +154,14 @@ double Solid::energy(std::span<const Vec3> x, Scratch& scratch) const {
 
 void Solid::forces(std::span<const Vec3> x, std::span<Vec3> f, const Viscosity& viscosity,
                    Scratch& scratch) const {
+  const TurnedBack turned(*this, x);
+  sum_forces(turned.x(), f, viscosity, scratch);
+  turned.turn_forces(f);
+}
+
+/// Sums the forces of all elements, whatever has turned.
+void Solid::sum_forces(std::span<const Vec3> x, std::span<Vec3> f, const Viscosity& viscosity,
+                       Scratch& scratch) const {
   if (averages()) average_dilation(x, scratch);
   std::ranges::fill(f, Vec3::Zero());
   const auto corners = static_cast<std::size_t>(corners_);
@@ -181,6 +202,7 @@ void Solid::element_forces(const Element& element, const Mat3* F, const Mat3* R,
 void Solid::add_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, const Viscosity& viscosity,
                           Scratch& scratch) const {
   if (averages()) average_dilation(x, scratch);
+  const TurnedBack turned(*this, x);
   const std::size_t blocks = blocks_of(corners_), corners = static_cast<std::size_t>(corners_);
   for (std::size_t from = 0; from < elements(); from += kElementsOfBatch) {
     const std::size_t count = std::min(kElementsOfBatch, elements() - from);
@@ -190,6 +212,7 @@ void Solid::add_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, const Vis
         each_element<Law>(x, from + begin, from + end,
                           [&](const Element& element, const Mat3* F, const Mat3* R) {
                             element_stiffness<Law>(element, F, R, own, viscosity, scratch);
+                            turned.turn_blocks(element.nodes[0], {own, blocks});
                             own += blocks;
                           });
       });
@@ -213,10 +236,12 @@ void Solid::add_stiffness(std::span<const Vec3> x, StiffnessMatrix& k, const Vis
 
 void Solid::stiffness_of(std::size_t e, std::span<const Vec3> x, const Viscosity& viscosity, Scratch& scratch,
                          const TakeBlock& take) const {
+  const TurnedBack turned(*this, x);
   std::array<Mat3, kMostCorners*(kMostCorners + 1) / 2> blocks;
   with_law(material_.law, [&]<class Law>() {
     each_element<Law>(x, e, e + 1, [&](const Element& element, const Mat3* F, const Mat3* R) {
       element_stiffness<Law>(element, F, R, blocks.data(), viscosity, scratch);
+      turned.turn_blocks(element.nodes[0], std::span(blocks).first(blocks_of(corners_)));
       const Mat3* block = blocks.data();
       for (int i = 0; i < corners_; ++i) {
         for (int j = 0; j <= i; ++j) take(element.nodes[i], element.nodes[j], *block++);

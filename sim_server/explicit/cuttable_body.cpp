@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 
 #include "sim_server/explicit/mass_scaling.h"
 
@@ -92,6 +93,24 @@ void CuttableBody::reshape(std::span<const int> slid, const Parting& parting, co
     tensors.set_mass_factor(
         t, mass_factor_of(remaining.mesh(), static_cast<std::size_t>(t), material, frequency));
   tensors.part(parting, reshaped, remaining, material);
+}
+
+void CuttableBody::release(std::span<const std::vector<int>> floating, const TetMesh& mesh) {
+  std::vector<std::vector<FloatingPieces::Node>> pieces;
+  for (const std::vector<int>& tetrahedra : floating) {
+    std::set<int> vertices;
+    for (const int t : tetrahedra) {
+      const Tetrahedron& corners = mesh.tetrahedra[static_cast<std::size_t>(t)];
+      vertices.insert(corners.begin(), corners.end());
+    }
+    const auto place_of = [this](int v) { return tensors.places()[static_cast<std::size_t>(v)]; };
+    if (std::ranges::any_of(vertices, [&](int v) { return place_of(v) < 0; })) continue;
+    std::vector<FloatingPieces::Node>& piece = pieces.emplace_back();
+    for (const int v : vertices)
+      piece.push_back({place_of(v), tensors.masses()[static_cast<std::size_t>(place_of(v))],
+                       mesh.vertices[static_cast<std::size_t>(v)]});
+  }
+  motion.release({std::move(pieces), tensors.masses().size()});
 }
 
 }  // namespace palpate::sim

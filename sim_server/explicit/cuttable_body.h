@@ -32,6 +32,10 @@ struct CuttableBody {
   void part(std::span<const CuttableModel::Slide> slides, const Parting& parting, const CutMesh& remaining,
             const Material& material, double frequency);
 
+  /// Lets these parts of what is in motion float (their tetrahedra, as `CuttableModel::release`). One of
+  /// which some is condensed does not, and swells as it turns.
+  void release(std::span<const std::vector<int>> floating, const TetMesh& mesh);
+
   /// Since a body was made of a mesh, these vertices of that slid and faces were parted, in any order;
   /// `remaining` is now. The copies are where what they are of is.
   void reshape(std::span<const int> slid, const Parting& parting, const CutMesh& remaining,

@@ -46,7 +46,7 @@ CuttableModel::Removed CuttableMotion::lost_with(int tetrahedron, const CutMesh&
     u[i].setZero();
     const int place = body_->tensors.places()[vertex];
     if (place < 0) continue;
-    u[i] = Eigen::Map<const Vec3>(body_->motion.state.u.data() + 3 * place);
+    u[i] = body_->motion.turned_displacement(place);
     const Vec3 v = Eigen::Map<const Vec3>(body_->motion.state.v.data() + 3 * place);
     lost.kinetic += mass / 8 * v.squaredNorm();
     lost.momentum += mass / 4 * v;
@@ -96,6 +96,12 @@ void CuttableMotion::part(std::span<const Slide> slides, const Parting& parting,
     state_.shown[static_cast<std::size_t>(remaining.number_of(split.copy))] = 1;
   take_body();
   continue_with_body();
+}
+
+void CuttableMotion::release(std::span<const std::vector<int>> floating, const CutMesh& remaining) {
+  end_contact();
+  state_.changed = true;
+  body_->release(floating, remaining.mesh());
 }
 
 /// Moves what is in motion to where the body says.

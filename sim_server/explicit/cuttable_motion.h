@@ -43,6 +43,7 @@ class CuttableMotion final : public DeformationModel,
   std::span<const Vec3> nodes() const noexcept override;
   Removed remove(std::span<const int> tetrahedra, const CutMesh& remaining) override;
   void part(std::span<const Slide> slides, const Parting& parting, const CutMesh& remaining) override;
+  void release(std::span<const std::vector<int>> floating, const CutMesh& remaining) override;
   const PublishedModes* modes() const noexcept override;
   void read_modes(ModalMotion& state) noexcept override;
   void residual_compliance(std::span<const int> vertices, ContactPatch& patch) const noexcept override;

@@ -85,7 +85,7 @@ void ExplicitMotion::append_copy_of(int place) {
 
 ExplicitMotion::Snapshot ExplicitMotion::save() {
   if (begun_) team_.finish();
-  return {state, bent_, resistance_, ahead_, kicks_, begun_};
+  return {state, bent_, resistance_, ahead_, kicks_, begun_, floating_, frames_};
 }
 
 void ExplicitMotion::restore(const Snapshot& saved) {
@@ -96,6 +96,22 @@ void ExplicitMotion::restore(const Snapshot& saved) {
   ahead_ = saved.ahead;
   kicks_.assign(saved.kicks.begin(), saved.kicks.end());
   begun_ = saved.begun;
+  floating_ = saved.floating;
+  frames_ = saved.frames;
+}
+
+void ExplicitMotion::release(FloatingPieces pieces) {
+  drop_next();
+  floating_ = std::move(pieces);
+  frames_.resize(floating_.count());
+  turn_bent();
+}
+
+Vec3 ExplicitMotion::turned_displacement(int place) const {
+  const Vec3 u = Eigen::Map<const Vec3>(state.u.data() + std::ptrdiff_t{3} * place);
+  const int p = floating_.piece_of(place);
+  if (p < 0) return u;
+  return FloatingPieces::turned_back(floating_.node(place), frames_[static_cast<std::size_t>(p)], u);
 }
 
 void ExplicitMotion::add_to_last(int place, double h, const Vec3& force) noexcept {
@@ -108,7 +124,9 @@ void ExplicitMotion::add_impulse(int place, double h, const Vec3& dv) noexcept {
                        numbers_per_vertex = std::ptrdiff_t{ElasticTensors::kNumbersPerVertex} * place;
   Eigen::Map<Vec3>(state.v.data() + first) += dv;
   Eigen::Map<Vec3>(state.u.data() + first) += h * dv;
-  const Vec3 path = (h + damping_.stiffness) * dv;
+  Vec3 path = (h + damping_.stiffness) * dv;
+  const int piece = floating_.piece_of(place);
+  if (piece >= 0) path = (frames_[static_cast<std::size_t>(piece)].R.transpose() * path).eval();
   if (begun_ && kicks_.size() == kicks_.capacity()) drop_next();
   if (begun_)
     kicks_.push_back({place, path});
@@ -154,6 +172,7 @@ void ExplicitMotion::multiply() noexcept {
 }
 
 void ExplicitMotion::sub_step(double h, const std::vector<double>& force) noexcept {
+  if (!floating_.empty()) return sub_step_floating(h, force);
   if (columns_ == 1) {
     multiply();
     for_parts([&](std::size_t p, std::size_t begin, std::size_t end) {
@@ -163,6 +182,32 @@ void ExplicitMotion::sub_step(double h, const std::vector<double>& force) noexce
   } else {
     tensors_.multiply_wide(bent_.data(), resistance_.data());
     advance<ElasticTensors::kWide>(0, tensors_.masses().size(), h, force.data());
+  }
+}
+
+/// As `sub_step`, of one motion; K acts on floating pieces in their frames.
+void ExplicitMotion::sub_step_floating(double h, const std::vector<double>& force) noexcept {
+  multiply();
+  for_parts(
+      [&](std::size_t p, std::size_t, std::size_t) { tensors_.gather_part(p, resistance_.data(), ahead_); });
+  floating_.turn_forces(frames_, {state.u.data()}, {resistance_.data(), ElasticTensors::kNumbersPerVertex});
+  for_parts(
+      [&](std::size_t, std::size_t begin, std::size_t end) { advance<1>(begin, end, h, force.data()); });
+  turn_bent();
+}
+
+/// Finds the frames of floating pieces, and the displacement in them that the next product is of.
+void ExplicitMotion::turn_bent() noexcept {
+  floating_.find_frames({state.u.data()}, frames_);
+  for (std::size_t p = 0; p < frames_.size(); ++p) {
+    for (const FloatingPieces::Node& node : floating_.piece(p)) {
+      const std::ptrdiff_t first = std::ptrdiff_t{3} * node.number,
+                           numbers_per_vertex =
+                               std::ptrdiff_t{ElasticTensors::kNumbersPerVertex} * node.number;
+      const Eigen::Map<const Vec3> u(state.u.data() + first), v(state.v.data() + first);
+      Eigen::Map<Vec3>(bent_.data() + numbers_per_vertex) = FloatingPieces::turned_back(node, frames_[p], u) +
+                                                            damping_.stiffness * frames_[p].R.transpose() * v;
+    }
   }
 }
 
@@ -200,6 +245,7 @@ void ExplicitMotion::bend(std::size_t begin, std::size_t end) noexcept {
 void ExplicitMotion::run(double h) noexcept {
   drop_next();
   for_parts([&](std::size_t, std::size_t begin, std::size_t end) { bend(begin, end); });
+  turn_bent();
   sub_step(h, state.f);
 }
 

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "common/prompt_team.h"
+#include "sim_server/elasticity/floating_pieces.h"
 #include "sim_server/elasticity/tensors.h"
 #include "sim_server/scene/scene.h"
 #include "sim_server/tissue/rayleigh_damping.h"
@@ -23,6 +24,7 @@ double count_sub_steps(const Scene& scene, double longest);
 /// The free vertices of a linear tissue in motion, by the semi-implicit (symplectic) Euler method with
 /// lumped masses M:
 ///   v += h (M^-1 (f - K (u + stiffness v)) - mass v),   u += h v.
+/// Of pieces that nothing holds, K acts in the floating frame of each (`FloatingPieces`).
 /// Several motions side by side: (n x 3 x columns), those of one number together. One motion of a large body
 /// goes on by all cores, with the same bits whatever their number. Only the constructor allocates, and the
 /// first sub-step of a large body, which starts the threads of the other cores (`PromptTeam`).
@@ -64,6 +66,12 @@ class ExplicitMotion {
   /// else yet. Of one motion.
   void add_to_last(int place, double h, const Vec3& force) noexcept;
 
+  /// Lets these pieces float, by places; each other vertex is held with the rest. `run` is the next step. Of
+  /// one motion. Allocates.
+  void release(FloatingPieces pieces);
+  /// Returns the displacement of a vertex, of a floating piece in its frame, m.
+  Vec3 turned_displacement(int place) const;
+
   /// State of the motion as a value.
   struct Snapshot {
     State state;
@@ -71,6 +79,8 @@ class ExplicitMotion {
     ElasticTensors::Ahead ahead;
     std::vector<std::pair<int, Vec3>> kicks;
     bool begun = false;
+    FloatingPieces floating;
+    std::vector<FloatingPieces::Frame> frames;
   };
   /// Waits for a product that has begun; `restore` continues with it. Of one motion. Allocates.
   Snapshot save();
@@ -81,7 +91,8 @@ class ExplicitMotion {
   void append_copy_of(int place);
 
   std::size_t bytes() const {
-    return (3 * state.u.size() + 2 * bent_.size()) * sizeof(double) + kicks_.capacity() * sizeof(Impulse);
+    return (3 * state.u.size() + 2 * bent_.size()) * sizeof(double) + kicks_.capacity() * sizeof(Impulse) +
+           floating_.bytes();
   }
 
  private:
@@ -97,6 +108,8 @@ class ExplicitMotion {
   void for_parts(const Work& work) noexcept;
   void multiply() noexcept;
   void sub_step(double h, const std::vector<double>& force) noexcept;
+  void sub_step_floating(double h, const std::vector<double>& force) noexcept;
+  void turn_bent() noexcept;
   template <int kColumns>
   void advance(std::size_t begin, std::size_t end, double h, const double* force) noexcept;
 
@@ -111,6 +124,8 @@ class ExplicitMotion {
 
   std::vector<double> bent_, resistance_;  // u + stiffness v, m; K times that, N
   ElasticTensors::Ahead ahead_;            // of that product, of one motion
+  FloatingPieces floating_;
+  std::vector<FloatingPieces::Frame> frames_;  // of these, in which `bent_` of their vertices is
   MultiplyPart multiply_part_{*this};
   bool begun_ = false;          // the product of the next sub-step, of where the last one led
   std::vector<Impulse> kicks_;  // since then

@@ -137,6 +137,34 @@ std::vector<Piece> PieceFinder::separated(const CutMesh& mesh, std::span<const i
   return cut_off_by(mesh, tetrahedra, [&](std::span<const int> of_body) { return fronts_at(of_body); });
 }
 
+std::vector<std::vector<int>> PieceFinder::floating(const CutMesh& mesh) const {
+  DisjointSets sets(body_held_.size());  // of bodies that share a vertex
+  std::vector<int> loose;
+  for (int t = 0; t < static_cast<int>(body_of_.size()); ++t) {
+    if (mesh.remains(t) && body_held_[static_cast<std::size_t>(body_of_[static_cast<std::size_t>(t)])] == 0)
+      loose.push_back(t);
+  }
+  for (const int t : loose) {
+    for (const int v : mesh.mesh().tetrahedra[static_cast<std::size_t>(t)]) {
+      for (const int other : mesh.around(v)) {
+        if (mesh.remains(other))
+          sets.join(body_of_[static_cast<std::size_t>(t)], body_of_[static_cast<std::size_t>(other)]);
+      }
+    }
+  }
+  std::vector<char> held(body_held_.size(), 0);  // of sets
+  for (int body = 0; body < static_cast<int>(body_held_.size()); ++body)
+    held[static_cast<std::size_t>(sets.of(body))] |= body_held_[static_cast<std::size_t>(body)];
+  std::map<int, std::vector<int>> parts;  // of each set
+  for (const int t : loose) {
+    const int set = sets.of(body_of_[static_cast<std::size_t>(t)]);
+    if (held[static_cast<std::size_t>(set)] == 0) parts[set].push_back(t);
+  }
+  std::vector<std::vector<int>> floating;
+  for (auto& [set, tetrahedra] : parts) floating.push_back(std::move(tetrahedra));
+  return floating;
+}
+
 /// Makes what is cut off a body of its own from now on.
 void PieceFinder::name_bodies(std::vector<Piece>& pieces) {
   for (const Piece& piece : pieces) {

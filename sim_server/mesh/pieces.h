@@ -31,6 +31,9 @@ class PieceFinder {
   /// Returns the pieces that were cut off by the separation of faces, just now, between these remaining
   /// tetrahedra.
   std::vector<Piece> separated(const CutMesh& mesh, std::span<const int> tetrahedra);
+  /// Returns the tetrahedra, ascending, of each part that floats: it hangs together by vertices, and nothing
+  /// holds any of it. O(m).
+  std::vector<std::vector<int>> floating(const CutMesh& mesh) const;
 
  private:
   /// Tetrahedra that one search has reached, in order; those from `next` on have unvisited neighbours.

@@ -78,6 +78,7 @@ class Implicit final : public DeformationModel,
   std::span<const Vec3> nodes() const noexcept override { return dynamics_.position(); }
   Removed remove(std::span<const int> tetrahedra, const CutMesh& remaining) override;
   void part(std::span<const Slide> slides, const Parting& parting, const CutMesh& remaining) override;
+  void release(std::span<const std::vector<int>> floating, const CutMesh& remaining) override;
   ModelTraits traits() noexcept override;
   std::vector<MemoryPart> memory() const override;
   std::any save() override;

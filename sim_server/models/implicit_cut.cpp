@@ -89,4 +89,11 @@ void Implicit::part(std::span<const Slide> slides, const Parting& parting, const
   dynamics_.part(parting.splits, masses_of(moved, remaining));
 }
 
+void Implicit::release(std::span<const std::vector<int>> floating, const CutMesh&) {
+  if (solid_.material().law != ElasticLaw::kLinear) return;
+  end_step_in_hand();
+  solid_.release(floating);
+  dynamics_.release();
+}
+
 }  // namespace palpate::sim

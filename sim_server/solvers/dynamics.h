@@ -75,6 +75,9 @@ class Dynamics {
   /// Of a body with `DynamicsSettings::cut`. An evaluation.
   void part(std::span<const Split> splits, std::span<const NodeMass> masses);
 
+  /// Between two steps: some of the body floats from now on (`Solid::release`). An evaluation.
+  void release() { part({}, {}); }
+
   /// The trial point (nodes, m).
   std::span<const Vec3> position() const { return motion_.position(); }
   /// Returns the trial point, to prescribe nodes of it.

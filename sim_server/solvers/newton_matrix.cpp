@@ -71,7 +71,8 @@ void NewtonMatrix::build(const Solid& solid, std::span<const Vec3> x, std::span<
   turns_.clear();
   const bool separated = !copies_.empty();
   if (separated) matrix_ = solid.stiffness_matrix(*dofs_);
-  if (solid.material().law != ElasticLaw::kLinear) {
+  built_turned_.clear();
+  if (solid.turns()) {
     built_turned_.resize(x.size());
     solid.node_rotations(x, built_turned_);
   }
@@ -204,7 +205,7 @@ Eigen::MatrixXd NewtonMatrix::solve(const Eigen::MatrixXd& b) const {
 }
 
 void NewtonMatrix::turn_to(const Solid& solid, std::span<const Vec3> x) {
-  if (solid.material().law == ElasticLaw::kLinear) return;
+  if (!solid.turns()) return;
   turns_.resize(x.size());
   solid.node_rotations(x, turns_);
   for (std::size_t i = 0; i < built_turned_.size(); ++i) turns_[i] *= built_turned_[i].transpose();

@@ -62,7 +62,7 @@ class NewtonMatrix {
   void turn_to(const Solid& solid, std::span<const Vec3> x);
   /// Q A^-1 Q^T b, Q turning each node as the body there has turned since A was built: a body that was only
   /// carried and turned about has that matrix, so the factor serves as long as nothing but that happens.
-  /// Before the first `turn_to`, and of the linear law, `solve`.
+  /// Before the first `turn_to`, and of the linear law without floating pieces, `solve`.
   Eigen::VectorXd turned_solve(const Eigen::VectorXd& b) const;
   /// A^-1 of unit forces on the three unknowns from each of `first` on: (unknowns x 3 first.size()); of a
   /// factor in single precision by one step of refinement, which squares its error, where the first three

@@ -84,6 +84,11 @@ class CuttableModel {
   /// Allocates.
   virtual void part(std::span<const Slide> slides, const Parting& parting, const CutMesh& remaining) = 0;
 
+  /// Lets these parts (their tetrahedra, ascending) float: nothing holds them, and all else is held. Called
+  /// after `remove` and `part`, once some tissue has come loose: linear tissue turns with the frame of each
+  /// part (`FloatingPieces`). O(tissue). Allocates.
+  virtual void release(std::span<const std::vector<int>> floating, const CutMesh& remaining) = 0;
+
   /// Restricts contact to these places until the last instant of the next step, so that the model need
   /// update no other vertices before. Empty: contact may be anywhere. `triangles`: the surface.
   virtual void restrict_contact(std::span<const Neighbourhood> places,

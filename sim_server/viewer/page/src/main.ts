@@ -53,8 +53,7 @@ class Page {
     this.canvas_.hidden = by_id("legend").hidden = this.view_ === null;
     by_id("no-picture").hidden = this.view_ !== null;
     if (this.view_ && this.touch_) {
-      const size = () => Math.hypot(...(this.session_.shape?.topology.box_size ?? [0.1, 0.1, 0.1]));
-      new Pointer(this.canvas_, this.view_, this.touch_, { touchable: () => this.controls_.touchable(), size });
+      new Pointer(this.canvas_, this.view_, this.touch_, { touchable: () => this.controls_.touchable() });
     }
     this.canvas_.addEventListener("webglcontextlost", () => note("The browser took the picture away; it usually comes back."));
     this.keys();

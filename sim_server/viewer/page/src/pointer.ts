@@ -1,18 +1,16 @@
 // Mouse, pen and fingers over the picture: a drag on the organ or a tool touches, any other drag turns the camera.
 import type { Touch } from "./touch";
 import type { View } from "./view";
+import { pixels_of, radii_of } from "./wheel";
 
 export interface Rules {
   /** The tools that a drag may move; none: every drag turns the camera. */
   touchable(): number[];
-  /** The organ's size, m: how far a turn of the wheel goes. */
-  size(): number;
 }
 
 type Mode = "none" | "turn" | "shift" | "touch";
 
 const kTurn = 0.008; // rad a pixel
-const kWheelDepth = 0.00005; // of the organ's size, for each pixel that the wheel would scroll
 
 export class Pointer {
   private mode_: Mode = "none";
@@ -84,10 +82,8 @@ export class Pointer {
 
   private wheel(event: WheelEvent): void {
     event.preventDefault();
-    const pixels = event.deltaY * (event.deltaMode === 1 ? 33 : event.deltaMode === 2 ? 400 : 1);
-    // Up, away from the one who turns it, pushes the tool away as well.
-    if (this.mode_ === "touch") this.touch_.push(-pixels * kWheelDepth * this.rules_.size());
-    else this.view_.orbit.zoom(Math.exp(pixels * 0.0012));
+    if (this.mode_ === "touch") this.touch_.push_by_radius(radii_of(event));
+    else this.view_.orbit.zoom(Math.exp(pixels_of(event) * 0.0012));
     this.view_.invalidate();
   }
 }

@@ -60,6 +60,11 @@ export class Touch {
     this.unsent_ = true;
   }
 
+  /** Away from the camera, as a share of the tip's radius. */
+  push_by_radius(share: number): void {
+    this.push(share * this.radius_of_(this.tool));
+  }
+
   end(): void {
     this.active = false;
     this.unsent_ = true;

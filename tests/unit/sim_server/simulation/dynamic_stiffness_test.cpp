@@ -2,6 +2,8 @@
 #include <Eigen/LU>
 #include <complex>
 #include <numbers>
+#include <optional>
+#include <tuple>
 
 #include "sim_server/simulation/simulation.h"
 #include "sim_server/tissue/contact_instants.h"
@@ -21,18 +23,21 @@ constexpr double kTau = 2 * std::numbers::pi, kAmplitude = 1e-4, kPeriod = 1.0 /
 
 /// That vertex held by a tool that moves it along its softest direction.
 struct HeldVertex : OneFreeVertex {
-  HeldVertex() {
+  double damping;  // by stiffness, of 1 / frequency
+
+  /// `instants`: of one sub-step each, much shorter than 1 / frequency; none: as the model chooses.
+  explicit HeldVertex(double damped = 0.3, std::optional<int> instants = 60) : damping(damped) {
     scene.rate_hz = 1 / kPeriod;
     scene.tools[0].grasp_place = Vec3::Zero();
     scene.deformation.model = "tensor_mass";
     scene.deformation.of<RayleighDamping>().mass = 0.2 * frequency;
-    scene.deformation.of<RayleighDamping>().stiffness = 0.3 / frequency;
-    scene.deformation.of<ContactInstants>().instants =
-        60;  // of one sub-step each, much shorter than 1 / frequency
+    scene.deformation.of<RayleighDamping>().stiffness = damping / frequency;
+    scene.deformation.of<ContactInstants>().instants = instants;
   }
 
   Complex exact(double w) const {
-    return stiffness - w * w * mass + Complex(0, w) * (0.2 * frequency * mass + 0.3 / frequency * stiffness);
+    return stiffness - w * w * mass +
+           Complex(0, w) * (0.2 * frequency * mass + damping / frequency * stiffness);
   }
 
   /// Force per displacement of the steady oscillation, by least squares over the last second of two.
@@ -70,6 +75,23 @@ TEST_CASE("dynamic stiffness: a grasped vertex answers in size and phase as its 
     const Complex error = vertex.measured(kTau * hertz) / vertex.exact(kTau * hertz);
     CHECK(std::abs(error) == Approx(1).margin(0.01));
     CHECK(std::arg(error) * 360 / kTau == Approx(0).margin(0.3));
+  }
+}
+
+TEST_CASE("dynamic stiffness: a step of hundreds of sub-steps is felt in size and phase, too") {
+  // Damping makes sub-steps short: one instant for each, and at last one for every few.
+  for (const auto& [damping, least, most] : {std::tuple(20.0, 150, 500), std::tuple(100.0, 250, 500)}) {
+    const HeldVertex vertex(damping, std::nullopt);
+    const int instants = Simulation(vertex.scene, vertex.mesh).instants();
+    CAPTURE(damping, instants);
+    CHECK(instants >= least);
+    CHECK(instants <= most);
+    for (const double hertz : {2.0, 20.0 / 3, 8.0, 13.0}) {
+      CAPTURE(hertz);
+      const Complex error = vertex.measured(kTau * hertz) / vertex.exact(kTau * hertz);
+      CHECK(std::abs(error) == Approx(1).margin(0.01));
+      CHECK(std::arg(error) * 360 / kTau == Approx(0).margin(0.5));
+    }
   }
 }
 
