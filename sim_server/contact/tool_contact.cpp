@@ -394,6 +394,20 @@ double ToolContact::surface_strain(std::span<const Vec3> positions,
   return std::max(1 - std::sqrt(least), std::sqrt(most) - 1);
 }
 
+double ToolContact::least_area(std::span<const Vec3> positions, std::span<const Vec3> rest) const noexcept {
+  const std::span<const int> vertices = finder_.vertices();
+  double least = 1;
+  for (const Triangle& t : patch_.triangles) {
+    const auto area = [&](std::span<const Vec3> at) -> Vec3 {
+      const Vec3& corner = at[vertices[t[0]]];
+      return (at[vertices[t[1]]] - corner).cross(at[vertices[t[2]]] - corner);
+    };
+    const Vec3 before = area(rest);
+    least = std::min(least, area(positions).dot(before) / before.squaredNorm());
+  }
+  return least;
+}
+
 /// No answer: the tool is taken away, and enters afresh with the next step.
 void ToolContact::reject(ToolTissue tissue) {
   release(tissue);

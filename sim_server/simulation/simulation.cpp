@@ -265,14 +265,27 @@ void Simulation::answer(std::size_t tool, const ToolInput& input, double dt) {
   answer.mean_force = state_.means[tool].all;
   if (cut_) cut_->resist(tool, contact, dt, answer);
   judge_place(contact, answer);
+  if (!answer.flagged || answer.doubt != Doubt::kInsideOut) return;
+  static_cast<ToolForce&>(answer) = before;  // held
+  answer.tangent.setZero();
+  answer.flagged = true;
 }
 
 /// Whether a force that was found means what it seems to: the tool may be where nothing is touchable, or the
-/// tissue under it strained beyond its law.
+/// tissue under it strained beyond its law, or turned inside out.
 void Simulation::judge_place(const ToolContact& tool, ToolAnswer& answer) noexcept {
   if (answer.flagged) return;
-  if (state_.strain && answer.contacts > 0)
-    answer.strained = state_.strain->add(tool.surface_strain(tissue_.positions, organ_.rest));
+  if (state_.strain && answer.contacts > 0) {
+    const double strain = tool.surface_strain(tissue_.positions, organ_.rest);
+    answer.strained = state_.strain->add(strain);
+    const bool loose = cut_ && cut_->resection().totals().loose_pieces > 0;  // these may turn
+    const double area = loose ? 1 : tool.least_area(tissue_.positions, organ_.rest);
+    if (state_.strain->is_inside_out(strain, area)) {
+      answer.flagged = true;
+      answer.doubt = Doubt::kInsideOut;
+      return;
+    }
+  }
   const double depth = tool.depth_outside_reach(tissue_.positions);
   if (depth == 0) return;
   answer.flagged = true;

@@ -44,6 +44,11 @@ bool StrainRange::add(double strain) noexcept {
   return beyond;
 }
 
+bool StrainRange::is_inside_out(double strain, double area) const noexcept {
+  constexpr double kTorn = 3;  // edges four times as long; shipped scenes stay below 0.6
+  return law_ == ElasticLaw::kLinear && !(area > 0 && strain <= kTorn);
+}
+
 std::string StrainRange::to_text() const {
   if (beyond_ == 0) return "";
   return fmt::format(

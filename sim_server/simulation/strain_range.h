@@ -20,6 +20,10 @@ class StrainRange {
   explicit StrainRange(ElasticLaw law) : law_(law) {}
   /// Notes the strain of a step in contact; returns true if it is beyond what the law is meant for.
   bool add(double strain) noexcept;
+  /// True if tissue of the linear law is inside out under a tool: a face of the surface is turned over, its
+  /// `area` (`ToolContact::least_area`) being 0 or less, or its `strain` is beyond 3, as where a tip came out
+  /// behind. That law resists neither. False of other laws: elements tell (`NonlinearModel::balance`).
+  bool is_inside_out(double strain, double area) const noexcept;
   /// "strain up to 45 % where tools press, in 12 of 80 steps in contact beyond the 20 % that ..."; empty:
   /// none was.
   std::string to_text() const;
