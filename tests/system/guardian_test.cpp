@@ -86,6 +86,16 @@ TEST_CASE("guardian: with a port, another Falcon is left alone") {
   CHECK(hand.falcon.state("3-2")["opens"] == 0);
 }
 
+TEST_CASE("guardian: a Falcon at a named port that is not listed at first is waited for", "[in_time]") {
+  Leaning hand("falcon:2-1");
+  hand.falcon.command("unplug 2-1");  // as while it is enumerated again
+  hand.client->signal(SIGKILL);
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  hand.falcon.command("plug 2-1");
+  CHECK(hand.said("zero force sent to falcon:2-1"));
+  CHECK(hand.falcon.state("3-2")["opens"] == 0);
+}
+
 TEST_CASE("guardian: a client that was stopped is ended, and its device switched off") {
   Leaning hand("falcon:2-1");
   hand.client->signal(SIGSTOP);
