@@ -170,11 +170,21 @@ void make_session(const std::filesystem::path& capture, std::size_t answers, Rer
                  1e-6 * static_cast<double>(session.bytes().size()));
 }
 
-void report_how_far_off(const Rerun& rerun, const std::filesystem::path& scene) {
+void report_how_far_off(const Rerun& rerun, const std::filesystem::path& file, const Scene& scene) {
   log::info("{}: stepped again, its forces are within {:.3g} N of those captured, the largest {:.3g} N",
-            scene.string(), rerun.off(), rerun.largest());
-  if (rerun.off() > kSimilar * rerun.largest())
-    log::warning("{}: that is far off; is it the scene of this capture?", scene.string());
+            file.string(), rerun.off(), rerun.largest());
+  if (rerun.off() <= kSimilar * rerun.largest()) return;
+  if (scene.cutting) {
+    log::warning(
+        "{}: that is far off: what is shown is not cut as what was felt. Where tissue yields depends on "
+        "every "
+        "step of the server, and a capture holds those that were answered; without --scene the captured "
+        "forces "
+        "are shown alone",
+        file.string());
+  } else {
+    log::warning("{}: that is far off; is it the scene of this capture?", file.string());
+  }
 }
 
 }  // namespace
@@ -207,7 +217,7 @@ int view_capture(const ViewOptions& options) {
   RecordedSession session(facts);
   auto rerun = simulation ? std::make_unique<Rerun>(*simulation) : nullptr;
   make_session(options.capture, forces.samples.size(), rerun.get(), session);
-  if (rerun) report_how_far_off(*rerun, *options.scene);
+  if (rerun) report_how_far_off(*rerun, *options.scene, *scene);
   ViewerFeed feed(facts.organ.rest);
   Viewer viewer(*address, "", facts, feed, &session.bytes());
   std::jthread serving([&] {

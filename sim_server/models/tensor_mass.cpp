@@ -27,8 +27,8 @@ ElasticTensors assemble(const ModelInputs& inputs) {
 
 /// Returns how many contact instants a step of `steps` sub-steps has: one for each, up to 500; beyond that
 /// one for every few, as few as `calm_loaded` calms. A force held over T lags by T / 2: at 500 instants in
-/// 1/30 s by 0.1 degrees of 8 Hz. An instant costs 25 us (`dynamic_stiffness_test`'s case on a block of 8 x 4
-/// x 8 cells), so that 500 fit into a live step.
+/// 1/30 s by 0.1 degrees of 8 Hz. An instant costs some 25 us (a tip that presses on a block of 8 x 4 x 8
+/// cells), so that 500 fit into a live step.
 int usual_instants(double steps) {
   constexpr double kMost = 500;
   return static_cast<int>(std::ceil(steps / std::ceil(steps / kMost)));

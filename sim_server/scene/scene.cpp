@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "common/error.h"
 #include "common/log.h"
 #include "common/memory_budget.h"
 #include "sim_server/mesh/gmsh_io.h"
@@ -42,6 +43,12 @@ std::vector<int> fixed_vertices(const Scene& scene, const TetMesh& mesh) {
   std::vector<int> fixed;
   for (int v = 0; v < static_cast<int>(is_fixed.size()); ++v) {
     if (is_fixed[v]) fixed.push_back(v);
+  }
+  if (scene.material && !scene.fixed.empty() && fixed.size() == mesh.vertices.size()) {
+    fail(
+        "{}: holds all {} vertices of the mesh together with what other [[fixed]] hold: nothing can move; "
+        "make it smaller",
+        scene.fixed.back().where, fixed.size());
   }
   return fixed;
 }

@@ -115,7 +115,7 @@ struct Scene {
 TetMesh read_mesh_of(const Scene& scene);
 
 /// Mesh vertices that the scene fixes, ascending. Throws `Error` for a region that holds no vertex or an
-/// unknown tag.
+/// unknown tag, and where no vertex of tissue is left free.
 std::vector<int> fixed_vertices(const Scene& scene, const TetMesh& mesh);
 
 }  // namespace palpate::sim

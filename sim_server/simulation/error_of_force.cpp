@@ -10,12 +10,6 @@ bool steps_matter(const Scene& scene, const ToolSettings& tool) {
   return model_of(scene.deformation).moves || tool.shape.friction > 0;
 }
 
-/// Linear elements of tissue that is all but incompressible.
-bool locks(const Material& material) {
-  constexpr double kNearOneHalf = 0.49;
-  return material.element == ElementKind::kLinear && material.poisson_ratio > kNearOneHalf;
-}
-
 }  // namespace
 
 ErrorOfForce::ErrorOfForce(const Scene& scene, const Simulation& simulation,
@@ -30,7 +24,7 @@ ErrorOfForce::ErrorOfForce(const Scene& scene, const Simulation& simulation,
     if (!deforms) errors.mesh.source = ErrorSource::kNone;
     if (!steps_matter(scene, tool)) errors.time_step = {.source = ErrorSource::kNone};
     std::optional<ElementKind> element;
-    if (deforms && !tool.grasps() && !locks(*scene.material))
+    if (deforms && !tool.grasps() && !scene.material->locks())
       element = scene.material->element;  // the estimate is of tips that press
     const double radius = tool.shape.radius;
     tools_.push_back({errors, element,

@@ -9,7 +9,7 @@ namespace palpate::sim {
 /// Errors of the force on each tool by mesh and time step. Measured where a study of the scene is known. Else
 /// the mesh's share is estimated in each step from how fine it is where the tool presses
 /// (`estimated_mesh_error`), but not where that table says nothing: of linear elements on tissue that bends
-/// (`ThinTissue`), or that is all but incompressible (nu above 0.49: they lock). That of the time step is
+/// (`ThinTissue`), or that is all but incompressible (`Material::locks`). That of the time step is
 /// unknown, but where the force follows from the poses of the step alone, so that no step is too long. One
 /// thread.
 class ErrorOfForce {

@@ -266,9 +266,8 @@ void Simulation::answer(std::size_t tool, const ToolInput& input, double dt) {
   if (cut_) cut_->resist(tool, contact, dt, answer);
   judge_place(contact, answer);
   if (!answer.flagged || answer.doubt != Doubt::kInsideOut) return;
-  static_cast<ToolForce&>(answer) = before;  // held
-  answer.tangent.setZero();
-  answer.flagged = true;
+  static_cast<ToolForce&>(answer) = before;
+  hold(answer);
 }
 
 /// Whether a force that was found means what it seems to: the tool may be where nothing is touchable, or the

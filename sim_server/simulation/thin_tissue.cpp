@@ -5,18 +5,19 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kOpposite = -0.5;  // cosine between the normals of two sides
+constexpr double kOpposite = -0.5;  // cosine between the normals of two sides, and of a load that presses one
 
-/// Unit normals of the surface by vertices of the mesh; zero inside, and of held vertices.
-std::vector<Vec3> free_normals(const TetMesh& mesh, const Surface& surface, const std::vector<int>& held) {
-  std::vector<Vec3> normals(mesh.vertices.size(), Vec3::Zero());
+using Normals = std::vector<std::vector<Vec3>>;
+
+/// Unit normals of the faces at each vertex of the mesh; none inside, nor of held vertices.
+Normals free_normals(const TetMesh& mesh, const Surface& surface, const std::vector<int>& held) {
+  Normals normals(mesh.vertices.size());
   for (const Triangle& t : surface.triangles) {
     const auto at = [&](int k) { return mesh.vertices[surface.vertices[t[k]]]; };
-    const Vec3 area = (at(1) - at(0)).cross(at(2) - at(0));
-    for (const int k : t) normals[surface.vertices[k]] += area;
+    const Vec3 normal = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
+    for (const int k : t) normals[surface.vertices[k]].push_back(normal);
   }
-  for (const int vertex : held) normals[vertex].setZero();
-  for (Vec3& normal : normals) normal.normalize();
+  for (const int vertex : held) normals[vertex].clear();
   return normals;
 }
 
@@ -38,21 +39,22 @@ std::vector<std::vector<int>> neighbours_of(const TetMesh& mesh) {
 }  // namespace
 
 ThinTissue::ThinTissue(const TetMesh& mesh, const Surface& surface, const std::vector<int>& held)
-    : thin_(surface.vertices.size(), 0) {
-  const std::vector<Vec3> normals = free_normals(mesh, surface, held);
+    : thin_(surface.vertices.size()) {
+  const Normals normals = free_normals(mesh, surface, held);
   const std::vector<std::vector<int>> neighbours = neighbours_of(mesh);
   std::vector<int> near, next;
   for (std::size_t k = 0; k < surface.vertices.size(); ++k) {
-    const int vertex = surface.vertices[k];
-    near = {vertex};
-    for (int layer = 1; layer < kLayers && thin_[k] == 0; ++layer) {
-      next.clear();
+    near = {surface.vertices[k]};
+    for (int layer = 1; layer < kLayers; ++layer) {
+      next = near;
       for (const int v : near) next.insert(next.end(), neighbours[v].begin(), neighbours[v].end());
-      const bool other_side =
-          std::ranges::any_of(next, [&](int v) { return normals[v].dot(normals[vertex]) < kOpposite; });
-      thin_[k] = other_side ? 1 : 0;
       near.swap(next);
     }
+    std::ranges::copy_if(normals[surface.vertices[k]], std::back_inserter(thin_[k]), [&](const Vec3& normal) {
+      return std::ranges::any_of(near, [&](int v) {
+        return std::ranges::any_of(normals[v], [&](const Vec3& n) { return n.dot(normal) < kOpposite; });
+      });
+    });
   }
 }
 
@@ -61,7 +63,10 @@ bool ThinTissue::bears(std::span<const VertexLoad> loads) const noexcept {
   for (const VertexLoad& load : loads) {
     const double size = load.force.norm();
     all += size;
-    thin += static_cast<std::size_t>(load.vertex) < thin_.size() && thin_[load.vertex] != 0 ? size : 0;
+    if (static_cast<std::size_t>(load.vertex) >= thin_.size()) continue;  // of a cut
+    const bool bends = std::ranges::any_of(
+        thin_[load.vertex], [&](const Vec3& normal) { return load.force.dot(normal) < kOpposite * size; });
+    thin += bends ? size : 0;
   }
   return all > 0 && 2 * thin >= all;
 }

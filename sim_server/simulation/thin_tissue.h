@@ -1,5 +1,4 @@
 #pragma once
-#include <cstdint>
 #include <vector>
 
 #include "sim_server/mesh/surface.h"
@@ -18,12 +17,13 @@ class ThinTissue {
   /// O(tetrahedra + surface), with all vertices within two edges of each of the surface.
   ThinTissue(const TetMesh& mesh, const Surface& surface, const std::vector<int>& held);
 
-  /// True if at least half of what a tool loads the surface with is on such tissue. O(loads); does not
-  /// allocate.
+  /// True if at least half of what a tool loads the surface with presses such tissue through its thickness.
+  /// O(loads); does not allocate.
   bool bears(std::span<const VertexLoad> loads) const noexcept;
 
  private:
-  std::vector<std::uint8_t> thin_;  // by vertices of the surface
+  /// By vertices of the surface: normals at rest of the faces there whose other side is so near.
+  std::vector<std::vector<Vec3>> thin_;
 };
 
 }  // namespace palpate::sim

@@ -6,6 +6,23 @@
 
 namespace palpate::sim {
 
+TEST_CASE("a scene that holds all vertices of its tissue is refused, with the last region that does so") {
+  const TetMesh mesh = grid_block({0, 0.5, 1}, {0, 0.1}, {0, 0.5, 1});
+  Scene scene;
+  scene.material.emplace();
+  for (const double to : {0.6, 2.0}) {
+    FixedRegion region;
+    region.box = {Vec3(-1, -1, -1), Vec3(to, 1, 2)};
+    region.where = "scene.toml:" + std::to_string(scene.fixed.size() + 7);
+    scene.fixed.push_back(region);
+    if (to < 1) CHECK(fixed_vertices(scene, mesh).size() == 12);
+  }
+  CHECK_THROWS_WITH(fixed_vertices(scene, mesh), Catch::StartsWith("scene.toml:8: holds all 18 vertices") &&
+                                                     Catch::Contains("nothing can move"));
+  scene.material.reset();  // a wall
+  CHECK(fixed_vertices(scene, mesh).size() == 18);
+}
+
 TEST_CASE("traction on a tag loads the triangles that are tagged, not all between tagged vertices") {
   // A plate one cell thick: all vertices are tagged, but only the triangles on top and below.
   TetMesh mesh = grid_block({0, 0.5, 1}, {0, 0.1}, {0, 0.5, 1});
