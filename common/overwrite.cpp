@@ -34,9 +34,10 @@ void set_aside(const std::vector<NamedFile>& files, bool force) {
   if (force) return;
   for (const NamedFile& named : files) {
     if (!named.file || !holds_something(*named.file)) continue;
-    const std::filesystem::path kept = free_name(*named.file);
     std::error_code failed;
-    std::filesystem::rename(*named.file, kept, failed);
+    const std::filesystem::path file = std::filesystem::canonical(*named.file, failed);  // links stay
+    const std::filesystem::path kept = free_name(*named.file);
+    if (!failed) std::filesystem::rename(file, kept, failed);
     if (failed) {
       fail_at_run_time("{}: {} is there, and cannot be kept as {} ({}); `--force` overwrites it",
                        named.option, named.file->string(), kept.string(), failed.message());

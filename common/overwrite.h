@@ -10,8 +10,8 @@ namespace palpate {
 Option force_option(bool& force);
 
 /// Keeps these captures or tables, where they are there already and hold something, under another name,
-/// F.~1~, F.~2~ ..., and says so; not with `force`. Devices and pipes are nothing to lose. Throws `Error`
-/// where a file cannot be renamed.
+/// F.~1~, F.~2~ ..., and says so; not with `force`. What a link names is kept, and the link stays. Devices
+/// and pipes are nothing to lose. Throws `Error` where a file cannot be renamed.
 void set_aside(const std::vector<NamedFile>& files, bool force);
 
 }  // namespace palpate

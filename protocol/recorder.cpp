@@ -5,15 +5,17 @@
 
 #include "common/clock.h"
 #include "common/error.h"
+#include "common/overwrite.h"
 
 namespace palpate::protocol {
 namespace {
 constexpr Time kWritePeriod = std::chrono::milliseconds(20);  // the ring fills at 400 000 datagrams a second
 }  // namespace
 
-Recorder::Recorder(const std::filesystem::path& file, std::optional<std::uint64_t> most_bytes)
+Recorder::Recorder(const std::filesystem::path& file, std::optional<std::uint64_t> most_bytes, bool overwrite)
     : path_(file),
       most_bytes_(most_bytes),
+      overwrite_(overwrite),
       part_(std::in_place, file),
       ring_(kRoom),
       epoch_(monotonic_epoch()) {}
@@ -89,8 +91,9 @@ void Recorder::name_it(const Packet& packet) noexcept {
     return;
   part_->named = true;
   try {
+    set_aside({{"--record", path_of(path_, ended_.files + 1)}}, overwrite_);
     part_->file.commit();
-  } catch (const Error&) {
+  } catch (const std::exception&) {
     failed.store(true, std::memory_order_relaxed);
   }
 }

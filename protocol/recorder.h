@@ -21,12 +21,13 @@ inline std::optional<std::uint64_t> bytes_of_mb(std::optional<double> mb) {
 /// full or too slow stops or thins the recording, never the session.
 class Recorder {
  public:
-  /// Makes the capture, beside `file`; it takes its name, and the place of a file that was there, with the
-  /// first datagram of a session, so that a run that nobody answers destroys nothing. Throws `Error`. Takes
-  /// 10 MB: room for four seconds at 2000 datagrams a second.
+  /// Makes the capture, beside `file`; it takes its name with the first datagram of a session, so that a run
+  /// that nobody answers changes nothing. A file that was there is kept (`set_aside`), or, with `overwrite`,
+  /// is lost then. Throws `Error`. Takes 10 MB: room for four seconds at 2000 datagrams a second.
   /// `most_bytes`: at this size a new file begins, F-2.pcap after F.pcap and so on, and of all these the ten
   /// newest are kept; absent: one file of any size.
-  explicit Recorder(const std::filesystem::path& file, std::optional<std::uint64_t> most_bytes = {});
+  explicit Recorder(const std::filesystem::path& file, std::optional<std::uint64_t> most_bytes = {},
+                    bool overwrite = false);
 
   /// Returns the file of a part of a recording, from 1: F.pcap, F-2.pcap, F-3.pcap ...
   static std::filesystem::path path_of(const std::filesystem::path& file, std::uint64_t number);
@@ -84,6 +85,7 @@ class Recorder {
 
   std::filesystem::path path_;
   std::optional<std::uint64_t> most_bytes_;
+  bool overwrite_;
   std::optional<Part> part_;  // none after one could not be begun
   Stats ended_{.files = 0};   // of the parts before
   SpscRing<Packet> ring_;

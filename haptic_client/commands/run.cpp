@@ -15,6 +15,7 @@
 #include "common/error.h"
 #include "common/interrupt.h"
 #include "common/log.h"
+#include "common/overwrite.h"
 #include "common/realtime.h"
 #include "common/text.h"
 #include "haptic_client/commands/overrides.h"
@@ -68,8 +69,8 @@ void check_together(const std::vector<ClientConfig>& configs) {
 std::vector<ToolFiles> files_of_tools(const ClientOptions& options, std::size_t tools) {
   std::vector<ToolFiles> files;
   for (std::size_t i = 1; i <= tools; ++i)
-    files.push_back(
-        {numbered(options.trace, i, tools), numbered(options.record, i, tools), options.record_mb});
+    files.push_back({numbered(options.trace, i, tools), numbered(options.record, i, tools), options.record_mb,
+                     options.force});
   return files;
 }
 
@@ -247,7 +248,8 @@ Command run_command() {
                   {"--record-mb",
                    "Go on in a new file at this size (F-2.pcap, ...); ten are kept",
                    &options.record_mb,
-                   {.within = Bounds{0.01, 1e6}}}},
+                   {.within = Bounds{0.01, 1e6}}},
+                  force_option(options.force)},
       .run = [requested] {
         if (requested->options.seconds) require_at_least(*requested->options.seconds, 1e-3, "--seconds", "s");
         return run_client(read_configs(*requested), requested->options);

@@ -15,6 +15,7 @@ struct ClientOptions {
   std::optional<std::filesystem::path> trace;   ///< CSV of the last minute, a row a tick; a file each tool
   std::optional<std::filesystem::path> record;  ///< capture of every datagram; a file each tool
   std::optional<double> record_mb;              ///< size at which a recording goes on in a new file
+  bool force = false;                           ///< overwrites a capture that is there
 };
 
 /// Runs one tool for each of `configs` (at least one): connects, runs the haptic loops until Ctrl-C or

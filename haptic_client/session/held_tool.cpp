@@ -49,8 +49,8 @@ HeldTool::HeldTool(const ClientConfig& config, const ToolFiles& files, std::stri
       loop_(*device_, pipeline_, mailboxes_, observation_, telemetry_, from_seconds(1 / rate_of(config))),
       server_(server_of(config)),
       socket_(protocol::Endpoint{.v6 = server_.v6}),
-      recorder_(files.record ? std::make_unique<protocol::Recorder>(*files.record,
-                                                                    protocol::bytes_of_mb(files.record_mb))
+      recorder_(files.record ? std::make_unique<protocol::Recorder>(
+                                   *files.record, protocol::bytes_of_mb(files.record_mb), files.overwrite)
                              : nullptr),
       recording_(recorder_.get()),
       link_(socket_, server_, mailboxes_, key_of(config), recorder_.get()) {

@@ -15,6 +15,7 @@ struct ToolFiles {
   std::optional<std::filesystem::path> trace;   ///< CSV of the last minute, a row a tick
   std::optional<std::filesystem::path> record;  ///< capture of every datagram
   std::optional<double> record_mb = {};         ///< size at which it goes on in a new file
+  bool overwrite = false;                       ///< a capture that is there
 };
 
 /// A device with the tool it holds: the loop, the link to the server and everything between, each with a

@@ -10,6 +10,7 @@
 #include "common/error.h"
 #include "common/interrupt.h"
 #include "common/log.h"
+#include "common/overwrite.h"
 #include "common/progress.h"
 #include "common/realtime.h"
 #include "common/report.h"
@@ -322,9 +323,10 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
   protocol::ServerSessions sessions = sessions_for(options.listen, scene.rate_hz, radii);
   protocol::UdpSocket socket = open_socket(options.listen);
   options.listen.address = protocol::to_string(socket.local());
-  const auto recorder = options.record ? std::make_unique<protocol::Recorder>(
-                                             *options.record, protocol::bytes_of_mb(options.record_mb))
-                                       : nullptr;
+  const auto recorder = options.record
+                            ? std::make_unique<protocol::Recorder>(
+                                  *options.record, protocol::bytes_of_mb(options.record_mb), options.force)
+                            : nullptr;
   const Time begin = now();
   SetupTimes progress{ProgressLine()};
   const auto cache = open_cache(options.cache);
@@ -408,6 +410,7 @@ Command run_command() {
                     "Go on in a new file at this size (F-2.pcap, ...); ten are kept",
                     &options->record_mb,
                     {.within = Bounds{0.01, 1e6}, .needs = "--record"}},
+                   force_option(options->force),
                    resection_option(options->resection),
                    viewer_option(options->viewer)},
                   cache_options(options->cache)}),

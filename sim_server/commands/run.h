@@ -18,6 +18,7 @@ struct ServerOptions {
   std::optional<std::filesystem::path> resection;  ///< CSV of what was removed, written at the end
   std::optional<std::filesystem::path> record;     ///< capture of every datagram
   std::optional<double> record_mb;                 ///< size at which it goes on in a new file
+  bool force = false;                              ///< overwrites a capture that is there
   CacheOptions cache;
   std::string viewer = "off";  ///< where the live page is served
 };

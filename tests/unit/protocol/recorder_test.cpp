@@ -1,6 +1,7 @@
 #ifdef PALPATE_WITH_CAPTURE
 #include "protocol/recorder.h"
 
+#include <fstream>
 #include <thread>
 
 #include "common/clock.h"
@@ -61,6 +62,45 @@ TEST_CASE("a recording goes on in new files at its size, nothing is lost between
       CHECK(tick == next++);
   }
   CHECK(next == 151);
+}
+
+TEST_CASE("a recording keeps what had its name, unless it is to be overwritten, also through a link") {
+  const test::TemporaryFolder folder;
+  const auto path = [&](const std::string& name) { return folder.path() / name; };
+  const auto read = [&](const std::string& name) {
+    std::ifstream file(path(name));
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  folder.write("F.pcap", "of before");
+  folder.write("F-2.pcap", "its second part");
+  {
+    Recorder nobody_came(path("F.pcap"), 2000);
+    finish(nobody_came);
+  }
+  CHECK(read("F.pcap") == "of before");
+  Recorder recorder(path("F.pcap"), 2000);
+  for (std::uint64_t k = 1; k <= 15; ++k) note(recorder, k);
+  finish(recorder);
+  CHECK(read("F.pcap.~1~") == "of before");
+  CHECK(read("F-2.pcap.~1~") == "its second part");
+  CHECK(ticks_in(path("F.pcap")).size() == 11);
+  CHECK(ticks_in(path("F-2.pcap")).size() == 4);
+
+  folder.write("real.pcap", "behind a link");
+  std::filesystem::create_symlink("real.pcap", path("link.pcap"));
+  Recorder linked(path("link.pcap"));
+  note(linked, 1);
+  finish(linked);
+  CHECK(std::filesystem::is_symlink(path("link.pcap")));
+  CHECK(read("link.pcap.~1~") == "behind a link");
+  CHECK(ticks_in(path("real.pcap")).size() == 1);
+
+  folder.write("G.pcap", "of before");
+  Recorder over(path("G.pcap"), {}, true);
+  note(over, 1);
+  finish(over);
+  CHECK_FALSE(std::filesystem::exists(path("G.pcap.~1~")));
+  CHECK(ticks_in(path("G.pcap")).size() == 1);
 }
 
 TEST_CASE("a flood of what is refused leaves a few datagrams a second in a recording") {
