@@ -47,10 +47,10 @@ struct CapturedRun {
   std::uint64_t lost() const, reordered() const, duplicated() const;
 };
 
-/// Sorts datagrams of a capture into runs: by their session, whose client may change its address; a session
-/// that is new by the address of the client, unless its tick numbers start again. Drops what the capture
-/// holds twice (`-i any` sees loopback twice). Memory: some hundred bytes a session; what comes after 1000
-/// runs, or 1000 sessions of one, is left out.
+/// Sorts datagrams of a capture into runs, by their session, whose client may change its address. A new
+/// session belongs to the newest run of its client's address, unless its tick numbers start again. Drops what
+/// the capture holds twice (`-i any` sees loopback twice). Memory: some hundred bytes a session; what comes
+/// after 1000 runs, or 1000 sessions of one, is left out.
 class CaptureSorter {
  public:
   /// Which run (from 0) a datagram belongs to, if it is a tool state, force sample or page of a surface of

@@ -41,9 +41,9 @@ class Observation {
   const Scoring& scoring() const noexcept { return scoring_; }
   const SessionTimeline& timeline() const noexcept { return timeline_; }
   const ErrorMeans& published_errors() const noexcept { return published_errors_; }
-  /// At most this is the mean error of the force on the hand, from the mesh to the motors, % of the root mean
-  /// square of the force that was right: the sum of its parts (triangle inequality). Nothing while one of
-  /// them is not known. That of the tissue's law is not in it.
+  /// Returns a bound of the mean error of the force on the hand, from the mesh to the motors, % of the root
+  /// mean square of the force that was right: the sum of its parts (triangle inequality). Nothing while one
+  /// of them is not known. The error of the tissue's law is not in it.
   std::optional<double> total_percent() const noexcept;
   /// The tick that goes with the next one, as there is no room for more; null: there is.
   const TickRecord* leaving() const noexcept;

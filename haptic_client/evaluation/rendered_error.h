@@ -3,7 +3,7 @@
 
 namespace palpate::client {
 
-/// What became of the force of a tick on its way to the hand, N, world frame.
+/// The force of a tick on its way to the hand, N, world frame.
 struct RenderedForce {
   Vec3 law = Vec3::Zero();      ///< what the law said
   Vec3 faded = Vec3::Zero();    ///< what soft start and fades left of it
@@ -15,9 +15,9 @@ struct RenderedForce {
 struct RenderedErrorParts {
   ErrorSizes hand;                   ///< |written - right|
   double extrapolation_percent = 0;  ///< mean |law - right| between samples that follow each other
-  double outages_percent = 0;        /// and where no sample came for longer than `kOutage`
-  double fades_percent = 0;          /// mean |faded - law|: soft start, fades of old and unsettled forces
-  double limits_percent = 0;         /// mean |written - faded|: passivity, damping, largest force and slew
+  double outages_percent = 0;        ///< the same where no sample came for longer than `kOutage`
+  double fades_percent = 0;          ///< mean |faded - law|: soft start, fades of old and unsettled forces
+  double limits_percent = 0;         ///< mean |written - faded|: passivity, damping, largest force and slew
 };
 
 /// Adds up by how much the force that was written to the device missed the one that was right, and why. By
@@ -29,7 +29,7 @@ class RenderedError {
   /// Adds one tick, in the order of time. `outage`: no sample came for longer than `kOutage` around it.
   void add(const RenderedForce& rendered, const ReferenceForce& right, bool outage) noexcept;
   RenderedErrorParts parts() const noexcept;
-  /// How many ticks were added.
+  /// Returns how many ticks were added.
   std::uint64_t judged() const noexcept { return judged_; }
 
  private:

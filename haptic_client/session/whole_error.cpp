@@ -73,6 +73,16 @@ std::string total_text(const Json& rendered) {
                      two_figures(rendered["hand_percent"].get<double>()));
 }
 
+/// A line where the samples that all is held against were not settled themselves; else nothing.
+std::string unsettled_text(const Json& force) {
+  const auto flagged = force["flagged"].get<double>(), samples = force["samples"].get<double>();
+  return flagged > 0 ? fmt::format(
+                           "          {:.3g} % of the samples had no settled force: what was right there "
+                           "is not known, and the error is held against them all the same\n",
+                           100 * flagged / samples)
+                     : "";
+}
+
 /// What is known of the law of the tissue itself.
 std::string law_text(const Json& force) {
   const auto strained = force["strained"].get<double>(), samples = force["samples"].get<double>();
@@ -93,8 +103,9 @@ void print_whole_error(const Json& tool) {
   } else {
     fmt::print(
         "  error   of the force on the hand: {} of its root mean square in the mean; at the worst tick {} %, "
-        "mesh and time step aside; a hand can tell about 10 %\n",
-        total_text(rendered), two_figures(rendered["hand_max_percent"].get<double>()));
+        "mesh and time step aside; a hand can tell about 10 %\n{}",
+        total_text(rendered), two_figures(rendered["hand_max_percent"].get<double>()),
+        unsettled_text(tool["force"]));
   }
   const auto row = [&](const char* name, const char* percent, const std::string& how) {
     const std::string number =
@@ -112,8 +123,9 @@ void print_whole_error(const Json& tool) {
   const auto unjudged = rendered["unjudged_ticks"].get<double>(),
              judged = rendered["judged_ticks"].get<double>();
   if (unjudged > 0) {
-    fmt::print("          {:.3g} % of the ticks could not be judged: no sample came within 0.9 s\n",
-               100 * unjudged / (judged + unjudged));
+    fmt::print(
+        "          {:.3g} % of the ticks could not be judged: no sample of their session came within 0.9 s\n",
+        100 * unjudged / (judged + unjudged));
   }
 }
 

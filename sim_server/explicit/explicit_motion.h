@@ -24,7 +24,7 @@ double count_sub_steps(const Scene& scene, double longest);
 /// The free vertices of a linear tissue in motion, by the semi-implicit (symplectic) Euler method with
 /// lumped masses M:
 ///   v += h (M^-1 (f - K (u + stiffness v)) - mass v),   u += h v.
-/// Of pieces that nothing holds, K acts in the floating frame of each (`FloatingPieces`).
+/// K acts on pieces that nothing holds in the floating frame of each (`FloatingPieces`).
 /// Several motions side by side: (n x 3 x columns), those of one number together. One motion of a large body
 /// goes on by all cores, with the same bits whatever their number. Only the constructor allocates, and the
 /// first sub-step of a large body, which starts the threads of the other cores (`PromptTeam`).

@@ -217,8 +217,7 @@ void Simulation::hold_answers(std::span<const ToolInput> inputs) noexcept {
   for (std::size_t i = 0; i < state_.answers.size(); ++i) {
     ToolAnswer held;
     if (inputs[i].pose) static_cast<ToolForce&>(held) = state_.answers[i];
-    if (state_.failed) fade(held);
-    hold(held);
+    state_.failed ? fade(held) : hold(held);
     held.flagged = inputs[i].pose.has_value();
     state_.answers[i] = held;
   }

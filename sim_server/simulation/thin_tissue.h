@@ -22,7 +22,7 @@ class ThinTissue {
   bool bears(std::span<const VertexLoad> loads) const noexcept;
 
  private:
-  /// By vertices of the surface: normals at rest of the faces there whose other side is so near.
+  /// Normals at rest, by vertices of the surface, of the faces there whose other side is so near.
   std::vector<std::vector<Vec3>> thin_;
 };
 
