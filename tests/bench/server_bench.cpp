@@ -137,6 +137,35 @@ void run_oval(benchmark::State& state, double radius, double friction) {
   time_steps_at(state, simulation, places);
 }
 
+/// One or two balls of 6 mm, 16 mm apart, pressed by 3 mm into the block of 2 mm edges that ships, and slid
+/// to and fro: what a second tool on the same tissue costs.
+void run_pair(benchmark::State& state, std::size_t tools) {
+  constexpr double kDepth = 0.003, kApart = 0.016;
+  Scene scene = test::example_scene("block");
+  scene.tools.front().reach.reset();
+  scene.tools.resize(tools, scene.tools.front());
+  Simulation simulation(scene);
+  const double radius = scene.tools.front().shape.radius;
+  std::vector<ToolInput> inputs(tools);
+  const auto step = [&](double depth, double slid) {
+    for (std::size_t k = 0; k < tools; ++k) {
+      const double x = (static_cast<double>(k) - 0.5 * static_cast<double>(tools - 1)) * kApart;
+      inputs[k].pose = ToolPose(Vec3(x + slid, radius - depth, 0.001));
+    }
+    return simulation.step(inputs, kPeriod);
+  };
+  for (int i = -10; i <= 10; ++i) step(0.1 * i * kDepth, 0);
+  const auto places = slide(Vec3::Zero(), Vec3::UnitX(), radius);
+  for (const Vec3& place : places) {
+    for (const ToolAnswer& answer : step(kDepth, place[0])) {
+      if (answer.contacts == 0 || answer.flagged) return state.SkipWithError("no settled contact to time");
+    }
+  }
+  show(state, simulation.state_hash());
+  std::size_t i = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(step(kDepth, places[i++ % kSlideSteps][0]).data());
+}
+
 /// A flat patch of `side` x `side` nodes, 3 mm apart, that gives way where it is pressed and near it.
 ContactPatch flat_patch(int side) {
   ContactPatch patch;
@@ -211,6 +240,8 @@ void add_server_rows() {
           [=](benchmark::State& state) { run_oval(state, radius, friction); });
     }
   }
+  add("step/pair/one_tool", [](benchmark::State& state) { run_pair(state, 1); });
+  add("step/pair/two_tools", [](benchmark::State& state) { run_pair(state, 2); });
   add("contact/flat_patch", run_contact_alone);
   add("virtual_session/5_s", run_virtual_session);
 }
