@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "common/contact/tool.h"
+#include "protocol/earlier_ticks.h"
 #include "protocol/wire.h"
 
 namespace palpate::protocol {
@@ -123,6 +124,14 @@ Verdict read_payload(MessageType type, std::span<const std::byte> payload, Messa
   return Verdict::kType;
 }
 
+/// True unless it says that earlier ticks follow, and what follows is none.
+bool are_earlier_ticks_valid(const Datagram& datagram) noexcept {
+  const auto* const state = std::get_if<ToolState>(&datagram.message);
+  if (state == nullptr || (state->flags & ToolState::kHasEarlierTicks) == 0) return true;
+  std::array<ToolState, kMostEarlierTicks> ticks;
+  return read_earlier_ticks(*state, behind_fields(datagram), ticks).has_value();
+}
+
 }  // namespace
 
 bool valid(const ModalLoads& m) noexcept {
@@ -131,6 +140,24 @@ bool valid(const ModalLoads& m) noexcept {
 
 bool valid(const RelaxedState& m) noexcept {
   return is_within_limits(m) && is_consistent(m);
+}
+
+bool valid(const ToolState& m) noexcept {
+  return is_within_limits(m);
+}
+
+void set_payload_size(std::span<std::byte> datagram, std::size_t payload) noexcept {
+  Writer(datagram.subspan(kPayloadAt))(static_cast<std::uint16_t>(payload));
+}
+
+std::span<const std::byte> behind_fields(const Datagram& datagram) noexcept {
+  if (!std::holds_alternative<ToolState>(datagram.message)) return {};
+  const std::size_t tag = std::to_integer<std::size_t>(datagram.bytes[kTagLengthAt]);
+  const auto payload = datagram.bytes.subspan(kHeaderBytes, datagram.bytes.size() - kHeaderBytes - tag);
+  ToolState state;
+  Reader reader(payload);
+  ToolState::fields(state, reader);
+  return payload.subspan(reader.used());
 }
 
 std::size_t encode(const Header& header, const Message& message, std::span<std::byte> out) noexcept {
@@ -193,7 +220,9 @@ Verdict decode(std::span<const std::byte> in, Datagram& out) noexcept {
   Message message;
   const Verdict verdict = read_payload(type, in.subspan(kHeaderBytes, payload), message);
   if (verdict != Verdict::kAccepted) return verdict;
-  out = {header, message, in};
+  const Datagram read{header, message, in};
+  if (!are_earlier_ticks_valid(read)) return Verdict::kValue;
+  out = read;
   return Verdict::kAccepted;
 }
 

@@ -9,7 +9,7 @@ namespace palpate::protocol {
 
 constexpr std::uint8_t kProtocolVersion = 2;  ///< grows when the layout of a message changes
 /// Offsets in the header.
-enum HeaderOffset : std::size_t { kVersionAt = 4, kTagLengthAt = 8, kKeyNumberAt = 9 };
+enum HeaderOffset : std::size_t { kVersionAt = 4, kPayloadAt = 6, kTagLengthAt = 8, kKeyNumberAt = 9 };
 constexpr std::size_t kHeaderBytes = 28;    ///< protocol/README.md, "Header"
 constexpr std::size_t kTagBytes = 16;       ///< room behind the payload for an authentication tag
 constexpr std::size_t kMaxDatagram = 1200;  ///< fits every path that carries IPv6
@@ -53,10 +53,17 @@ struct Datagram {
 bool valid(const RelaxedState& m) noexcept;
 /// True if these are loads on modes of any organ.
 bool valid(const ModalLoads& m) noexcept;
+/// True if each of its fields is within the bounds of the protocol.
+bool valid(const ToolState& m) noexcept;
 
 /// Writes one datagram and returns its size, at most `kMaxDatagram`. `out` must hold that many bytes. No
 /// allocation.
 std::size_t encode(const Header& header, const Message& message, std::span<std::byte> out) noexcept;
+
+/// Sets the size of the payload of a datagram that `encode` wrote, where more was appended.
+void set_payload_size(std::span<std::byte> datagram, std::size_t payload) noexcept;
+/// Returns the bytes of a ToolState's payload that stand behind its fields; empty of any other message.
+std::span<const std::byte> behind_fields(const Datagram& datagram) noexcept;
 
 /// The version of a datagram of ours that is not of this one, and whether that is a Hello.
 struct OtherVersion {

@@ -145,6 +145,8 @@ struct ToolState {
     kAsksPages = 64,
     kRequestsErrors = 128,
     kInPause = 256,
+    kHasEarlierTicks = 512,  ///< ticks before this one stand behind it (protocol/earlier_ticks.h)
+    kRequestsUplink = 1024,
   };
   static constexpr std::uint32_t kNoPage = 0xffffffff;
   std::uint8_t tool = 0;
@@ -261,6 +263,16 @@ struct RelaxedState {
   }
 };
 
+/// What the server has heard of the datagrams of a session.
+struct UplinkCounts {
+  std::uint32_t came = 0;  ///< datagrams, without duplicates
+  std::uint32_t lost = 0;  ///< sequence numbers up to the highest that came, without those that came
+  template <class Self, class Visitor>
+  static void fields(Self& m, Visitor&& v) {
+    v(m.came), v(m.lost);
+  }
+};
+
 struct ForceSample {
   static constexpr MessageType kType = MessageType::kForceSample;
   /// Bits of `flags`. Those called `kHas...` say which parts follow.
@@ -289,6 +301,7 @@ struct ForceSample {
     kContactUnsettled = 1048576,
     kOutsideReach = 2097152,
     kStrained = 4194304,  ///< the tissue under the tool, beyond what its law is meant for
+    kHasUplink = 8388608,
   };
   std::uint8_t tool = 0;
   std::uint64_t number = 0;     ///< of this sample in its session, from 1
@@ -315,6 +328,7 @@ struct ForceSample {
   /// kHasCuts: in how many steps so far tissue has been removed. Where it differs from that of another
   /// sample, the two are of other surfaces.
   std::uint32_t cuts = 0;
+  UplinkCounts uplink{};  ///< kHasUplink
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
     v(m.tool, limits::kToolNumber), v(m.number, limits::kFromOne), v(m.tool_tick),
@@ -332,6 +346,7 @@ struct ForceSample {
     if ((m.flags & kHasRelaxed) != 0) RelaxedState::fields(m.relaxed, v);
     if ((m.flags & kHasModalLoads) != 0) ModalLoads::fields(m.modal_loads, v);
     if ((m.flags & kHasCuts) != 0) v(m.cuts);
+    if ((m.flags & kHasUplink) != 0) UplinkCounts::fields(m.uplink, v);
   }
 };
 

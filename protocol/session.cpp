@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "protocol/earlier_ticks.h"
+
 namespace palpate::protocol {
 
 namespace {
@@ -48,6 +50,13 @@ std::optional<Hello> ClientSession::poll(Time now) noexcept {
 std::size_t ClientSession::write(const Message& message, std::span<std::byte> out) noexcept {
   if (std::holds_alternative<Hello>(message)) return write_sealed({}, message, hello_keys_.out, out);
   return write_sealed(next_header(), message, current_.keys.out, out);
+}
+
+std::size_t ClientSession::write_ticks(std::span<const ToolState> ticks, std::span<std::byte> out) noexcept {
+  const std::size_t size = encode_ticks({current_.session, current_.sent + 1}, ticks, out);
+  if (size == 0) return 0;
+  ++current_.sent;
+  return seal(out, size, current_.keys.out);
 }
 
 /// True if it is the answer to one of the newest Hellos: an older one may be captured and sent again.

@@ -46,6 +46,10 @@ class ClientSession {
   /// `kMaxDatagram` bytes.
   std::size_t write(const Message& message, std::span<std::byte> out) noexcept;
 
+  /// Writes ticks, oldest first, as the next datagram (`encode_ticks`); returns its size, or 0 where they do
+  /// not fit.
+  std::size_t write_ticks(std::span<const ToolState> ticks, std::span<std::byte> out) noexcept;
+
   bool welcomed() const noexcept { return current_.session != 0; }
   /// Returns the number of the session; it changes after a restart of the server. 0: none yet.
   std::uint64_t number() const noexcept { return current_.session; }

@@ -103,6 +103,7 @@ class Reader {
     (*this)(value);
   }
 
+  std::size_t used() const noexcept { return at_; }
   bool complete() const noexcept { return complete_; }
   bool finite() const noexcept { return finite_; }
 

@@ -1,8 +1,10 @@
 #include "protocol/capture.h"
 
+#include <algorithm>
+
 #include "protocol/c_interface/border.h"
 #include "protocol/c_interface/c_messages.h"
-#include "protocol/codec.h"
+#include "protocol/earlier_ticks.h"
 
 using namespace palpate;
 
@@ -14,6 +16,8 @@ struct palpate_capture {
   protocol::CaptureReader reader;
   protocol::Endpoint server;  ///< of the newest message that shows who that is
   bool knows_server = false, reported_trouble = false;
+  std::vector<protocol::ToolState> ticks;  ///< of the newest datagram that are still to come, newest first
+  palpate_datagram around{};               ///< that datagram
 
   std::uint32_t direction(const protocol::CapturedDatagram& packet, const protocol::Message& message);
 };
@@ -45,9 +49,19 @@ void end(palpate_capture& capture, palpate_datagram& published) {
   }
 }
 
+/// One of the ticks that travelled in one datagram.
+void next_tick(palpate_capture& capture, palpate_datagram& published, palpate_tool_state* tool) {
+  const std::uint32_t size = published.struct_size;
+  published = capture.around;
+  published.struct_size = size;
+  if (tool != nullptr) c_interface::write_tool_state(capture.ticks.back(), *tool);
+  capture.ticks.pop_back();
+}
+
 void next(palpate_capture& capture, palpate_datagram& published, palpate_tool_state* tool,
           palpate_force_sample* sample) {
   const std::uint32_t size = published.struct_size;
+  if (!capture.ticks.empty()) return next_tick(capture, published, tool);
   published = {};
   published.struct_size = size;
   protocol::CapturedDatagram packet;
@@ -65,9 +79,10 @@ void next(palpate_capture& capture, palpate_datagram& published, palpate_tool_st
   published.direction = capture.direction(packet, datagram.message);
   published.session = datagram.header.session;
   published.sequence = datagram.header.sequence;
-  if (const auto* state = std::get_if<protocol::ToolState>(&datagram.message);
-      state != nullptr && tool != nullptr)
-    c_interface::write_tool_state(*state, *tool);
+  capture.ticks = protocol::ticks_of(datagram);
+  std::ranges::reverse(capture.ticks);
+  capture.around = published;
+  if (!capture.ticks.empty()) next_tick(capture, published, tool);
   if (const auto* force = std::get_if<protocol::ForceSample>(&datagram.message);
       force != nullptr && sample != nullptr)
     c_interface::write_force_sample(*force, *sample);

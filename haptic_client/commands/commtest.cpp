@@ -47,15 +47,23 @@ double percent(double part, double entire) {
   return entire > 0 ? 100 * part / entire : 0;
 }
 
+/// Share of the time in which less travelled than a session has to tell, but for its first seconds.
+double slow_percent(const Json& levels) {
+  constexpr double kBegins = 2;  // s
+  double all = 0;
+  for (const auto& [name, seconds] : levels.items()) all += seconds.get<double>();
+  const double slow = all - levels[name_of(LinkLevel::kFull)].get<double>() - kBegins;
+  return percent(std::max(slow, 0.0), all);
+}
+
 /// The law is the one that was at work, which need not be the one asked for.
-TestedLink tested_link(const Json& tool, const LinkProbe::Figures& probe, double seconds) {
+TestedLink tested_link(const Json& tool, double seconds) {
   const Json& link = tool["link"];
   const double came = tool["force"]["samples"].get<double>(), lost = link["values_lost"].get<double>();
   constexpr double kHeaders = 28;  // bytes of IPv4 and UDP, of each datagram
   const double loss = percent(lost, lost + came);
-  // Round trips lose both ways, samples one.
-  const double round_trips = percent(static_cast<double>(probe.lost), static_cast<double>(probe.sent));
-  const double uplink = 100 - 100 * std::min(1.0, (100 - round_trips) / std::max(100 - loss, 1.0));
+  const double up_came = link["uplink"]["came"].get<double>(),
+               up_lost = link["uplink"]["lost"].get<double>();  // as the server counts them
   return {.law = tool["rendered"]["law"].get<std::string>(),
           .age_p99_ms = link["age_ms"]["p99"].get<double>(),
           .stiffest_n_m = link["stiffest_n_m"].get<double>(),
@@ -68,7 +76,8 @@ TestedLink tested_link(const Json& tool, const LinkProbe::Figures& probe, double
           .faded = tool["safety"]["ramped"].get<std::uint64_t>(),
           .sent_mbit_s =
               8e-6 * (link["bytes_up"].get<double>() + kHeaders * link["sent"].get<double>()) / seconds,
-          .uplink_loss_percent = uplink,
+          .uplink_loss_percent = percent(up_lost, up_came + up_lost),
+          .slow_percent = slow_percent(link["levels_s"]),
           .surface_named = link["surfaces"].get<std::uint64_t>() > 0,
           .pages = tool["force"]["surface_pages"].get<std::uint64_t>()};
 }
@@ -82,6 +91,9 @@ void print_round_trip(const Json& trip) {
 
 void print_session(const Json& tool, double seconds) {
   const Json &link = tool["link"], &force = tool["force"];
+  const Json& up = link["uplink"];
+  fmt::print("  uplink      {} of {} datagrams came to the server, as it counts them\n",
+             up["came"].get<long>(), up["came"].get<long>() + up["lost"].get<long>());
   fmt::print("  samples     {:.1f} a second; {} lost, {} reordered, {} doubled\n",
              tool["motion"]["sample_rate_hz"].get<double>(), link["values_lost"].get<long>(),
              link["reordered"].get<long>(), link["duplicated"].get<long>());
@@ -142,7 +154,7 @@ int test_link(const ClientConfig& requested, const CommtestOptions& options) {
   tool.stop();
   probe.stop();
   const Json of_tool = tool.report();
-  const TestedLink tested = tested_link(of_tool, probe.figures(), seconds);
+  const TestedLink tested = tested_link(of_tool, seconds);
   const Verdict verdict = judge(tested);
   std::vector<std::string> causes = remedies(tested);
   std::ranges::copy(link_causes(tool.local()), std::back_inserter(causes));

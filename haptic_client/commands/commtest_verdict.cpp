@@ -33,7 +33,8 @@ constexpr std::array<Row, 11> kRows{{
 }};
 constexpr double kDirect = 14220;  // N/m: what the true force at 500 Hz keeps stable, and no law exceeds
 
-constexpr double kMostLoss = 5;  // %
+constexpr double kMostLoss = 5;   // %
+constexpr double kMostSlow = 10;  // % of the time
 // Rank, Shi, Mueller and Hirche: from when a delay of the force is noticed, ms.
 constexpr double kNoticedInDamper = 15, kNoticedInSpring = 36;
 
@@ -108,6 +109,13 @@ void judge_losses(const TestedLink& link, Verdict& verdict) {
            fmt::format("your uplink carries {:.2g} of the {:.2g} Mbit/s that are sent",
                        link.sent_mbit_s * (1 - 0.01 * link.uplink_loss_percent), link.sent_mbit_s));
   }
+  if (link.slow_percent > kMostSlow) {
+    worsen(
+        verdict, Grade::kWarn,
+        fmt::format("the link is slow: in {:.0f} % of the time the ticks between travelled packed or not at "
+                    "all, which left {:.2g} Mbit/s up",
+                    link.slow_percent, link.sent_mbit_s));
+  }
   if (link.rate_hz > 0 && link.samples_hz < 0.9 * link.rate_hz) {
     worsen(verdict, Grade::kWarn,
            fmt::format("{:.1f} samples a second came, where the server aims for {:g}", link.samples_hz,
@@ -148,6 +156,8 @@ std::vector<std::string> remedies(const TestedLink& link) {
         "samples stay out in bursts, as on a radio link or behind traffic of others: use a cable, or a "
         "network "
         "of its own");
+  if (link.slow_percent > kMostSlow)
+    all.push_back("the link is too slow: use one that carries 2 Mbit/s each way, or end other traffic on it");
   if (link.loss_percent > kMostLoss && !bursts)
     all.push_back("single samples are lost on the way back: use a cable, or look for a bad one");
   if (link.age_p99_ms > kNoticedInSpring && !bursts)

@@ -24,7 +24,8 @@ struct TestedLink {
   double longest_gap_ms = 0;          ///< between two samples
   std::uint64_t gaps = 0, faded = 0;  ///< longer than 100 ms; times that the force faded
   double sent_mbit_s = 0;             ///< with the headers of IP and UDP
-  double uplink_loss_percent = 0;     ///< of datagrams to the server
+  double uplink_loss_percent = 0;     ///< of datagrams to the server, as it counts them
+  double slow_percent = 0;            ///< of the time, in which less travelled than a session has to tell
   bool surface_named = false;         ///< by samples, for a law that requests it
   std::uint64_t pages = 0;            ///< of the surface that came
 };
@@ -39,7 +40,8 @@ struct Verdict {
 
 /// FAIL: no session, ages or gaps at which the force fades (300 ms), a surface whose pages never come, or a
 /// stiffness above what the law keeps stable. WARN: within a factor of two of it, ages above 36 ms, which a
-/// hand notices in a spring (Rank et al.), gaps above 100 ms, more than 5 % of datagrams lost either way, or
+/// hand notices in a spring (Rank et al.), gaps above 100 ms, a link that is too slow for all that a session
+/// sends, more than 5 % of datagrams lost either way, or
 /// fewer than 90 % of the samples aimed for.
 Verdict judge(const TestedLink& link);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "protocol/earlier_ticks.h"
+
 namespace palpate::client {
 using namespace protocol;
 
@@ -48,8 +50,8 @@ std::optional<std::size_t> CaptureSorter::sort(const CapturedDatagram& captured,
   }
   ++ours_;
   const Header& header = datagram.header;
-  if (const auto* state = std::get_if<ToolState>(&datagram.message))
-    return sort_state(*state, header, captured.from);
+  if (std::holds_alternative<ToolState>(datagram.message))
+    return sort_states(ticks_of(datagram), header, captured.from);
   if (std::holds_alternative<ForceSample>(datagram.message)) return sort_sample(header, captured.to, true);
   if (std::holds_alternative<SurfacePage>(datagram.message)) return sort_sample(header, captured.to, false);
   if (std::holds_alternative<Welcome>(datagram.message)) {  // again, in mid-session: it has a number, too
@@ -59,28 +61,31 @@ std::optional<std::size_t> CaptureSorter::sort(const CapturedDatagram& captured,
   return {};
 }
 
-std::optional<std::size_t> CaptureSorter::sort_state(const ToolState& state, const Header& header,
-                                                     const Endpoint& client) {
-  const auto [run, link] = place_of(state, client, header.session);
+void CaptureSorter::add_tick(CapturedRun& run, const ToolState& tick) {
+  ++run.ticks;
+  const Time t{tick.t_ns};
+  if (!sensible(t)) return;
+  if (run.newest_tick == 0) {
+    run.first_tick = run.newest_tick = tick.tick;
+    run.first = run.newest = t;
+  } else if (tick.tick > run.newest_tick && t > run.newest) {
+    run.newest_tick = tick.tick;
+    run.newest = t;
+  }
+}
+
+std::optional<std::size_t> CaptureSorter::sort_states(std::span<const ToolState> ticks, const Header& header,
+                                                      const Endpoint& client) {
+  const auto [run, link] = place_of(ticks.front(), client, header.session);
   if (link == nullptr) {
     ++omitted_;
     return {};
   }
   if (!link->up.accept(header.sequence)) return {};
   // Before the first tick, of a tool that waits for others to be let in: it says nothing of a place.
-  if (state.tick == 1 && (state.flags & ToolState::kDeviceLost) != 0) return {};
-  ++run->ticks;
-  const std::size_t index = run - runs_.data();
-  const Time t{state.t_ns};
-  if (!sensible(t)) return index;
-  if (run->newest_tick == 0) {
-    run->first_tick = run->newest_tick = state.tick;
-    run->first = run->newest = t;
-  } else if (state.tick > run->newest_tick && t > run->newest) {
-    run->newest_tick = state.tick;
-    run->newest = t;
-  }
-  return index;
+  if (ticks.front().tick == 1 && (ticks.front().flags & ToolState::kDeviceLost) != 0) return {};
+  for (const ToolState& tick : ticks) add_tick(*run, tick);
+  return run - runs_.data();
 }
 
 /// Sorts a message of the server. It tells a session from another, but not a run: it never starts a session

@@ -72,8 +72,9 @@ class CaptureSorter {
   CapturedRun* newest_run(const protocol::Endpoint& client);
   CapturedRun* start_run(const protocol::Endpoint& client);
   Place place_of(const protocol::ToolState& state, const protocol::Endpoint& client, std::uint64_t session);
-  std::optional<std::size_t> sort_state(const protocol::ToolState& state, const protocol::Header& header,
-                                        const protocol::Endpoint& client);
+  std::optional<std::size_t> sort_states(std::span<const protocol::ToolState> ticks,
+                                         const protocol::Header& header, const protocol::Endpoint& client);
+  static void add_tick(CapturedRun& run, const protocol::ToolState& tick);
   std::optional<std::size_t> sort_sample(const protocol::Header& header, const protocol::Endpoint& client,
                                          bool is_sample);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/error.h"
+#include "protocol/earlier_ticks.h"
 
 namespace palpate::client {
 using namespace protocol;
@@ -57,10 +58,11 @@ void CapturedSession::fill() {
       if (samples_.size() > kStoredSamples) samples_.pop_front();
     } else if (const auto* page = std::get_if<SurfacePage>(&datagram.message)) {
       pages_.push_back(*page);
-    } else if (const auto* state = std::get_if<ToolState>(&datagram.message)) {
+    }
+    for (const ToolState& state : ticks_of(datagram)) {
       const auto after =
-          std::ranges::find_if(waiting_, [&](const Numbered& n) { return n.state.tick < state->tick; });
-      waiting_.insert(after, {place_, *state});
+          std::ranges::find_if(waiting_, [&](const Numbered& n) { return n.state.tick < state.tick; });
+      waiting_.insert(after, {place_, state});
     }
   }
 }

@@ -30,7 +30,8 @@ struct RightForce {
 
 /// The ticks since the newest sample, which wait for the next one: only then is it known which force was
 /// right. A ring, of as long as an outage takes to be noticed three times; ticks that had to make room, as no
-/// sample came for longer, are never judged. Haptic thread; only the constructor and `follow_surface`
+/// sample came for longer, are never judged, nor are those beside a sample that the server calls not settled.
+/// Haptic thread; only the constructor and `follow_surface`
 /// allocate.
 class PastTicks {
  public:
@@ -52,6 +53,8 @@ class PastTicks {
   /// Ticks with a rendered force that nothing can judge, as no sample came soon enough after them, or the
   /// next one was of another session.
   std::uint64_t unjudged() const noexcept { return unjudged_; }
+  /// Those that nothing can judge as a sample around them was not settled.
+  std::uint64_t unsettled() const noexcept { return unsettled_; }
   /// After how many others a tick is judged at most, or never.
   static std::size_t longest_wait(double rate_hz);
 
@@ -66,11 +69,15 @@ class PastTicks {
     pop();
   }
 
+  void drop_unsettled(Time until) noexcept {
+    for (; waiting_ > 0 && at(0).path.t < until; pop()) unsettled_ += at(0).rendered ? 1 : 0;
+  }
+
   std::vector<PastTick> ring_;
   std::size_t first_ = 0, waiting_ = 0;
   std::unique_ptr<FollowedContact> contact_;  // null: not followed
   Sample newest_;
-  std::uint64_t unjudged_ = 0;
+  std::uint64_t unjudged_ = 0, unsettled_ = 0;
 };
 
 template <class Judge>
@@ -80,6 +87,7 @@ void PastTicks::take(const Sample& sample, const PathTick& now, Judge&& judge) n
   const bool connected = before.number > 0 && sample.number > before.number && sample.t > before.t;
   while (waiting_ > 0 && at(0).path.t < (connected ? before.t : sample.t)) drop();
   if (!connected) return;
+  if (!before.settled || !sample.settled) return drop_unsettled(sample.t);
   BetweenSamples between(before, sample);
   std::size_t ready = 0;
   for (; ready < waiting_ && at(ready).path.t < sample.t; ++ready) between.add(at(ready).path);

@@ -67,6 +67,7 @@ class Scoring {
   const RenderedError& rendered() const noexcept { return rendered_; }
   /// See `PastTicks`.
   std::uint64_t unjudged() const noexcept { return past_.unjudged(); }
+  std::uint64_t unsettled() const noexcept { return past_.unsettled(); }
   /// Which simpler laws stood in for it, in how many of `ticks()`.
   const Substitutes& substitutes(std::size_t law) const noexcept { return substitutes_[law]; }
   std::uint64_t ticks() const noexcept { return ticks_; }    ///< since the first sample

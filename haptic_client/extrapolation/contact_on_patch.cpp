@@ -40,6 +40,13 @@ ContactOnPatch::ContactOnPatch(const Accuracy& accuracy)
   far_.creep.reserve(kMostNodes);
 }
 
+/// Smoothed, so that one tick that began late or early changes little.
+void ContactOnPatch::bear(Time tick) noexcept {
+  if (tick <= Time::zero()) return;
+  const double bearable = std::min(kMostWork, kWorkPerSecond * to_seconds(tick));
+  most_work_ += (bearable - most_work_) / 8;
+}
+
 void ContactOnPatch::separate() noexcept {
   ++solves_;
   state_ = {};
@@ -59,7 +66,7 @@ std::optional<Vec3> ContactOnPatch::move_to(const Surface& surface, const Vec3& 
     separate();
     return {};
   }
-  work_remaining_ = kMostWork;
+  work_remaining_ = most_work_;
   const double most = state_.placed ? kMostIncrements : kMostEntering;
   if (!state_.placed) enter(surface, p);
   if (const Vec3 motion = p - state_.place; state_.contacts > 0 && motion.norm() <= near(surface)) {

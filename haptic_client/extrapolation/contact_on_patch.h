@@ -23,6 +23,8 @@ class ContactOnPatch {
   /// or a wild compliance, the call gives nothing, and so ends in time. A coefficient of 0.3 takes at most
   /// half of it (measured on a block, at up to 0.2 m/s), one of 10 all of it in one of 100 calls.
   static constexpr double kMostWork = 1e6;
+  /// Multiplications a second of ticks: a quarter of the time, of a shorter tick than 2 ms, too.
+  static constexpr double kWorkPerSecond = kMostWork / 2e-3;
   explicit ContactOnPatch(const Accuracy& accuracy);
   ContactOnPatch() : ContactOnPatch(Accuracy{}) {}
 
@@ -37,6 +39,8 @@ class ContactOnPatch {
   /// The force at `p`; then it stands where it stood, on a patch around that.
   std::optional<Vec3> probe(const Surface& surface, const Vec3& p,
                             const ModalMemory* memory = nullptr) noexcept;
+  /// Bounds the work of the calls to come by what ticks as long as these bear: call it once a tick.
+  void bear(Time tick) noexcept;
   /// Lifts the tool: it has no place until the next call of `move_to`.
   void separate() noexcept;
   /// Its frame has been moved by `motion` (m): the same place is called another, so much farther.
@@ -45,7 +49,7 @@ class ContactOnPatch {
     center_ += motion;
   }
   /// Returns the work of the last call, multiplications.
-  double work() const noexcept { return kMostWork - work_remaining_; }
+  double work() const noexcept { return most_work_ - work_remaining_; }
   /// Returns the loads on the surface there, and how often contact has been solved; each solve may change the
   /// loads.
   std::span<const VertexLoad> loads() const noexcept { return loads_; }
@@ -91,7 +95,7 @@ class ContactOnPatch {
   } far_;
   std::vector<VertexLoad> loads_, stored_loads_;
   std::uint64_t solves_ = 0;
-  double work_remaining_ = 0;  // of this call
+  double most_work_ = kMostWork, work_remaining_ = 0;  // of a call; of this call
   /// Vertices of the model near the tool.
   struct NearVertices {
     std::vector<char> is_near;  // whether a vertex is near enough to matter

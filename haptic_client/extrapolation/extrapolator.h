@@ -47,6 +47,7 @@ struct Sample {
   std::optional<OtherTools> others = {};  ///< what `surface_v` has of them, and more
   std::uint32_t cuts = 0;                 ///< in how many steps so far tissue has been removed
   bool cutting = false;                   ///< by this tool: what it touches may give way at any time
+  bool settled = true;                    ///< false: the server flags `f`, which is then no truth
 };
 
 /// True if a law may use the sample at all: its vectors are finite.

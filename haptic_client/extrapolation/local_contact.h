@@ -35,7 +35,10 @@ class LocalContact : public Extrapolator {
 
   void update(const Sample& sample) noexcept override;
   void restart() noexcept override;
-  void start_tick(Time now) noexcept override { now_ = now; }
+  void start_tick(Time now) noexcept override {
+    if (now_ != Time{}) contact_.bear(now - now_);
+    now_ = now;
+  }
   Vec3 force(const Vec3& p, Time t) noexcept override;
   Request request() const noexcept override { return {.at_tool = true, .ahead = true, .surface = true}; }
   bool stepped_down() const noexcept override { return !known_; }

@@ -20,7 +20,7 @@ std::size_t PagePace::allowed(Time now) noexcept {
   const double dt = last_ == Time{} ? 0 : std::clamp(to_seconds(now - last_), 0.0, 1.0);
   last_ = now;
   if (period_ == Time{}) period_ = now;
-  if (now - period_ >= kPeriod) {
+  if (now - period_ >= kPeriod || (rose_ && waits())) {
     adapt();
     period_ = now;
   }
@@ -44,13 +44,18 @@ std::optional<Time> PagePace::fastest() const noexcept {
   return std::min(*fastest_, *fastest_before_);
 }
 
+/// True if a page of this period waited in a queue.
+bool PagePace::waits() const noexcept {
+  const auto fastest = this->fastest();
+  return fastest && slowest_ - *fastest > kWaits;
+}
+
 void PagePace::adapt() noexcept {
   if (lost_ > 0) backoff_ = std::min(2 * patience(), kMostPatience);
-  const auto fastest = this->fastest();
-  const bool waits = fastest && slowest_ - *fastest > kWaits;
-  if (waits || lost_ > 0) {
+  rose_ = !waits() && lost_ == 0 && came_ > 0;
+  if (waits() || lost_ > 0) {
     rate_ = std::max(kSlower * rate_, kSlowest);
-  } else if (came_ > 0) {
+  } else if (rose_) {
     rate_ = std::min(kFaster * rate_, kFastest);
   }
   came_ = lost_ = 0;

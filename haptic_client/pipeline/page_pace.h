@@ -9,12 +9,12 @@ namespace palpate::client {
 
 /// Rate limit of page requests, so that pages do not fill the queue of a slow link and delay samples. Each
 /// 100 ms the rate grows by half while pages arrive almost as fast as the fastest one. It is halved where a
-/// page waited 30 ms longer or was lost. LEDBAT (RFC 6817) takes queueing delay for the signal of congestion
-/// likewise. The fastest is that of the last 10 to 20 s, as RFC 6817 has it for a changed route. Pure; haptic
-/// thread.
+/// page waited 30 ms longer or was lost, and at once where the rate had grown. LEDBAT (RFC 6817) takes
+/// queueing delay for the signal of congestion likewise. The fastest is that of the last 10 to 20 s, as RFC
+/// 6817 has it for a changed route. Pure; haptic thread.
 class PagePace {
  public:
-  static constexpr double kSlowest = 20, kFastest = 1000;  ///< pages a second
+  static constexpr double kSlowest = 8, kFastest = 1000;  ///< pages a second
 
   /// Returns how many pages may be requested now.
   std::size_t allowed(Time now) noexcept;
@@ -32,9 +32,11 @@ class PagePace {
 
  private:
   void adapt() noexcept;
+  bool waits() const noexcept;
   std::optional<Time> fastest() const noexcept;
 
-  double rate_ = 250, tokens_ = 8;
+  double rate_ = 30, tokens_ = 2;                 // a slow link is known only once something waited in it
+  bool rose_ = false;                             // the rate did last
   std::uint64_t came_ = 0, lost_ = 0;             // in this period
   std::optional<Time> fastest_, fastest_before_;  // in this window of time, and in the one before
   Time slowest_{};                                // in this period

@@ -34,6 +34,7 @@ Sample sample_of(const ForceSample& s, SurfaceModel* model) noexcept {
   Sample sample{s.number, Time{s.tool_t_ns}, s.p_W, s.f_W, s.surface_v_W};
   if ((s.flags & ForceSample::kHasCuts) != 0) sample.cuts = s.cuts;
   sample.cutting = (s.flags & ForceSample::kCutting) != 0;
+  sample.settled = (s.flags & ForceSample::kFlagged) == 0;
   if ((s.flags & ForceSample::kHasTangent) != 0) sample.at_tool = placed(s.at_tool, s.p_W, s.f_W);
   if ((s.flags & ForceSample::kHasAhead) != 0) sample.ahead = placed(s.ahead, s.ahead_p_W, s.ahead_f_W);
   if ((s.flags & ForceSample::kHasOthers) != 0) {

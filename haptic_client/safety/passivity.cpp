@@ -14,7 +14,9 @@ constexpr double kMassBound = 0.02;      // kg: damping times tick stays below, 
 constexpr double kFullDamping = 1.5;     // debts at which damping is at its bound
 constexpr double kSoften = 0.2;          // 1/s, by which the gain falls for each debt beyond the first
 constexpr double kFastest = 10;          // 1/s, at most
-constexpr double kRecover = 0.05;        // 1/s
+constexpr double kReturn = 0.5;          // 1/s: back within 2 s, once
+constexpr double kRecover = 0.05;        // 1/s, of a wall that needed a gain again
+constexpr double kCalm = 20;             // s without a fall, until that is forgotten
 constexpr double kLeastGain = 1e-3;      // of the force: 8 mN of 8 N
 constexpr double kDampingRise = 0.1;     // s, from no damping to its bound: no sample makes a step of it
 }  // namespace
@@ -81,6 +83,16 @@ void Passivity::restart() noexcept {
   debt_ = 0;
 }
 
+/// Returns by how much the gain may rise each second, and notes that it does. What made a debt once (a wild
+/// sample, a jump of the organ) may be over; what makes one again is the wall.
+double Passivity::recovery_rate(double pending, double dt) noexcept {
+  recovery_.calm += std::max(dt, 0.0);
+  if (recovery_.calm > kCalm) recovery_ = {};
+  if (recovery_.is_slow || pending > 1) return kRecover;
+  recovery_.returned = recovery_.returned || gain_ < 1;
+  return kReturn;
+}
+
 Passivity::Ruling Passivity::rule(double dt) noexcept {
   if (!settings_.enabled) return {};
   const double pending = std::max(debt_, 0.0) / (settings_.debt + kFraction * scale_);
@@ -88,8 +100,9 @@ Passivity::Ruling Passivity::rule(double dt) noexcept {
   if (pending > kFullDamping) {
     gain_ *= std::exp(-std::min(kSoften * (pending - kFullDamping), kFastest) * dt);
     gain_ = std::max(gain_, kLeastGain);
+    recovery_ = {.returned = recovery_.returned, .is_slow = recovery_.is_slow || recovery_.returned};
   } else {
-    gain_ = std::min(gain_ + kRecover * dt, 1.0);
+    gain_ = std::min(gain_ + recovery_rate(pending, dt) * dt, 1.0);
   }
   counts_.softened += gain_ < 1 ? 1 : 0;
   counts_.least_gain = std::min(counts_.least_gain, gain_);

@@ -29,8 +29,10 @@ struct PassivityCounts {
 /// What is owed beyond the tolerated debt (and a tenth of the energy stored: what a compliance that changes
 /// from place to place makes of S) is answered by damping that grows continuously up to a bound; its work
 /// pays the debt. Only where damping is at its bound and the debt still stays (a wall too stiff for rate and
-/// latency) does a gain on the force fall, slowly, and it recovers more slowly still. Nothing here makes a
-/// force jump. Pure; haptic thread only; no allocation.
+/// latency) does a gain on the force fall. Once the debt is paid the gain returns within 2 s, once: where it
+/// must fall again within 20 s the wall itself is too stiff, and the gain recovers in 20 s, so that a limit
+/// cycle gets one period of 2 s and no second. Nothing here makes a force jump. Pure; haptic thread only; no
+/// allocation.
 class Passivity {
  public:
   struct Settings {
@@ -79,6 +81,13 @@ class Passivity {
     Vec3 p = Vec3::Zero(), f = Vec3::Zero();
     Time t{};
   };
+  /// How the gain came to be what it is.
+  struct Recovery {
+    bool returned = false;  // quickly, by some of it, since it fell
+    bool is_slow = false;   // it fell again after that
+    double calm = 0;        // s, since it last fell
+  };
+  double recovery_rate(double pending, double dt) noexcept;
   const Tick* tick_at(Time t) const noexcept;
   void learn_compliance(const Reference& next) noexcept;
   double stored(double force, double max_force) const noexcept;
@@ -95,6 +104,7 @@ class Passivity {
   double moment_ = 0, square_ = 0;            // of compliance: sums of -dp . df and df . df
   double scale_ = 0;                          // J, stored lately
   double debt_ = 0, gain_ = 1, damping_ = 0;  // J; shares
+  Recovery recovery_;
   PassivityCounts counts_;
 };
 

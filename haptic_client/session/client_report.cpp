@@ -326,7 +326,28 @@ void print_tool(const Json& tool) {
   }
 }
 
+/// Says what a slow link left out. The first second of each session is packed.
+void print_levels(const Json& levels) {
+  constexpr std::array<std::pair<LinkLevel, const char*>, 3> kSlow{
+      {{LinkLevel::kPlain, "ticks packed and few pages"},
+       {LinkLevel::kLean, "samples with tangents alone and no pages"},
+       {LinkLevel::kSparse, "about a tick a step, and samples without parts"}}};
+  double all = 0, packed = levels[name_of(LinkLevel::kPacked)].get<double>();
+  for (const auto& [name, seconds] : levels.items()) all += seconds.get<double>();
+  std::string text;
+  const auto add = [&](double seconds, const char* what) {
+    if (seconds > 0.01 * all)
+      text += fmt::format("{}{:.0f} % of the time {}", text.empty() ? "" : ", ", 100 * seconds / all, what);
+  };
+  add(packed > 2 ? packed : 0, "ticks packed");
+  for (const auto& [level, what] : kSlow) add(levels[name_of(level)].get<double>(), what);
+  if (!text.empty())
+    fmt::print("  slow    the link is slow, so that less travelled: {}; 2 Mbit/s each way carry all of it\n",
+               text);
+}
+
 void print_link(const Json& link) {
+  print_levels(link["levels_s"]);
   fmt::print("  link   ");
   const char* separator = " ";
   for (const auto& [name, count] : link.items()) {
@@ -420,6 +441,10 @@ Json link_report(const NetLink& link) {
   report["bytes_down"] = figures.bytes_down;
   report["bytes_down_first_second"] = figures.early_bytes_down;
   report["stiffest_n_m"] = figures.stiffest;
+  report["uplink"] = {{"came", figures.uplink.came}, {"lost", figures.uplink.lost}};
+  report["levels_s"] = Json::object();
+  for (std::size_t i = 0; i < kLinkLevels; ++i)
+    report["levels_s"][name_of(static_cast<LinkLevel>(i))] = to_seconds(link.pace().spent()[i]);
   return report;
 }
 

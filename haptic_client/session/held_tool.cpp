@@ -111,7 +111,7 @@ void HeldTool::end_if_stuck() {
 /// Whoever presses into a wall that gives way should know that the wall is not to blame.
 void HeldTool::report_weakness() {
   const bool weak = loop_.weak;
-  if (weak && !weak_) {
+  if (weak && !told_.weak) {
     const double gain = loop_.gain, law = loop_.law_newton;
     const std::string why =
         gain < RenderedFraction::kHalf
@@ -125,7 +125,7 @@ void HeldTool::report_weakness() {
         "{}for half a second, less than half of the force has been rendered ({:.2f} of {:.2f} N): {}", name_,
         loop_.newest_newton.load(), law, why);
   }
-  weak_ = weak;
+  told_.weak = weak;
 }
 
 /// A force that the simulation does not stand behind is not rendered for long, and whoever holds the device
@@ -141,20 +141,33 @@ void HeldTool::report_doubt() {
   doubt_ = doubt;
 }
 
+/// Whoever feels less than the tissue gives should know that the link is to blame.
+void HeldTool::report_slow_link() {
+  const bool slow = link_.level >= LinkLevel::kLean;
+  if (slow && !told_.slow) {
+    log::warning(
+        "{}the link to {} is slow: samples come without surface and modes, so that a simpler law stands in; "
+        "a lower `rate_hz`, or a link of 2 Mbit/s each way, help",
+        name_, config_.server);
+  }
+  told_.slow = slow;
+}
+
 void HeldTool::look() {
   end_if_stuck();
+  report_slow_link();
   const std::int64_t age = loop_.newest_age_ns;
-  if (loop_.paused != paused_) {
-    paused_ = loop_.paused;
+  if (loop_.paused != told_.paused) {
+    told_.paused = loop_.paused;
     log::info("{}{}", name_,
-              paused_ ? "paused at the server: force goes to zero, and the tool stays where it is"
-                      : "the server goes on: soft start");
+              told_.paused ? "paused at the server: force goes to zero, and the tool stays where it is"
+                           : "the server goes on: soft start");
   }
-  if (age > kOutage.count() && !silent_)
+  if (age > kOutage.count() && !told_.silent)
     log::warning("{}no samples from {}: force goes to zero; asking again", name_, config_.server);
-  if (age >= 0 && age < kOutage.count() && silent_)
+  if (age >= 0 && age < kOutage.count() && told_.silent)
     log::info("{}{} is back: soft start", name_, config_.server);
-  silent_ = age > kOutage.count();
+  told_.silent = age > kOutage.count();
   const Fault fault = loop_.fault;
   if (fault != Fault::kNone && fault_ == Fault::kNone) {
     log::warning("{}force latched off ({}); when it is safe, re-arm with `kill -USR1 {}`", name_,

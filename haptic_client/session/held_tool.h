@@ -58,6 +58,7 @@ class HeldTool {
   void end_if_stuck();
   void report_weakness();
   void report_doubt();
+  void report_slow_link();
 
   ClientConfig config_;
   ToolFiles files_;
@@ -76,7 +77,11 @@ class HeldTool {
   const char* device_status_ = "";
   std::uint64_t ticks_ = 0;  // when looked at last
   int standstills_ = 0;      // looks since then
-  bool silent_ = false, weak_ = false, paused_ = false, real_time_ = false;
+  bool real_time_ = false;
+  /// What the log said last.
+  struct Told {
+    bool silent = false, weak = false, paused = false, slow = false;
+  } told_;
   Fault fault_ = Fault::kNone;
   std::optional<Doubt> doubt_;
   std::jthread recording_thread_, net_thread_, haptic_thread_;

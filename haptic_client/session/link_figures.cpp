@@ -18,6 +18,7 @@ void LinkFigures::sample(const ForceSample& sample, Time now) noexcept {
   }
   newest_sample = now;
   surfaces += (sample.flags & ForceSample::kHasSurface) != 0 ? 1 : 0;
+  if ((sample.flags & ForceSample::kHasUplink) != 0) uplink = sample.uplink;
   ++samples;
   const std::int64_t age = now.count() - sample.tool_t_ns;
   if (age >= 0) age_ns.add(age);

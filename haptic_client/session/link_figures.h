@@ -16,6 +16,7 @@ struct LinkFigures {
   Time newest_sample{}, longest_gap{};         ///< when it came; between two samples that came
   std::uint64_t gaps = 0;                      ///< of more than `kGap`
   std::uint64_t surfaces = 0;                  ///< samples that name a surface, so that its pages can come
+  protocol::UplinkCounts uplink{};             ///< as the server told them last; none: it does not
   double stiffest = 0;  ///< N/m: of all samples in contact, how much force a metre into the surface makes
 
   static constexpr Time kGap = std::chrono::milliseconds(100);  ///< three samples at 30 Hz

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "common/clock.h"
+#include "protocol/earlier_ticks.h"
 
 namespace palpate::client {
 using protocol::Endpoint;
@@ -19,7 +20,9 @@ NetLink::NetLink(protocol::UdpSocket& socket, const Endpoint& server, HapticMail
       own_(socket.local_towards(server)),
       recorder_(recorder),
       mailboxes_(mailboxes),
-      session_(protocol::random_value<protocol::Nonce>(), key) {}
+      session_(protocol::random_value<protocol::Nonce>(), key) {
+  waiting_.reserve(protocol::kMostEarlierTicks + 1);
+}
 
 void NetLink::run() {
   on_timer();
@@ -28,6 +31,7 @@ void NetLink::run() {
                .on_doorbell = [this] { on_tool_states(); },
                .on_timer = [this] { on_timer(); }});
   on_tool_states();  // of the last ticks, whose bell nobody answered
+  send_ticks(waiting_);
   if (session_.welcomed()) send(protocol::Bye{});
 }
 
@@ -71,6 +75,7 @@ void NetLink::pass_on(const protocol::Message& message, Time t) {
   if (const auto* sample = std::get_if<protocol::ForceSample>(&message)) {
     mailboxes_.force.write(*sample);
     figures_.sample(*sample, t);
+    if (t.count() >= sample->tool_t_ns) pace_.sample(*sample, t - Time{sample->tool_t_ns}, t);
   }
   if (const auto* page = std::get_if<protocol::SurfacePage>(&message)) {
     mailboxes_.pages.push(*page);
@@ -86,19 +91,37 @@ void NetLink::on_tool_states() {
   for (protocol::ToolState state; mailboxes_.tool.pop(state); ticking_ = true) {
     if (!session_.welcomed()) continue;
     state.tool = session_.welcome().tool;
-    send(state);
+    state.flags |= protocol::ToolState::kRequestsUplink;
+    pace_.shrink(state);
+    if (!pace_.packs_ticks()) waiting_.clear();
+    waiting_.push_back(state);
+    const bool due = pace_.is_due(Time{state.t_ns}, session_.welcome().rate_hz);
+    if (!due && waiting_.size() <= protocol::kMostEarlierTicks) continue;
+    send_ticks(waiting_);
+    waiting_.clear();
   }
   for (protocol::Telemetry telemetry; mailboxes_.telemetry.pop(telemetry);) {
-    if (!session_.welcomed()) continue;
+    if (!session_.welcomed() || !pace_.carries_telemetry(Time{telemetry.t_ns})) continue;
     telemetry.tool = session_.welcome().tool;
     send(telemetry);
   }
+}
+
+/// In two datagrams where one is too small.
+void NetLink::send_ticks(std::span<const protocol::ToolState> ticks) {
+  if (ticks.empty()) return;
+  std::array<std::byte, protocol::kMaxDatagram> bytes;
+  if (const std::size_t size = session_.write_ticks(ticks, bytes); size > 0)
+    return send(std::span(bytes).first(size));
+  send_ticks(ticks.first(ticks.size() / 2));
+  send_ticks(ticks.subspan(ticks.size() / 2));
 }
 
 /// A tool that waits long for others to be let in, before its first tick, is kept by states that say nothing
 /// of a place.
 void NetLink::on_timer() {
   watcher.note(stats_);
+  level = pace_.level();
   greet();
   if (!session_.welcomed() || ticking_ || ++idle_timers_ < kPatientTimers) return;
   send(protocol::ToolState{.tool = session_.welcome().tool,
@@ -113,13 +136,16 @@ void NetLink::greet() {
 
 void NetLink::send(const protocol::Message& message) {
   std::array<std::byte, protocol::kMaxDatagram> bytes;
-  const std::size_t size = session_.write(message, bytes);
-  if (recorder_ != nullptr) recorder_->note(now(), own_, server_, {bytes.data(), size});
-  if (const std::error_code failed = socket_.send({bytes.data(), size}, server_)) {
+  send(std::span(bytes).first(session_.write(message, bytes)));
+}
+
+void NetLink::send(std::span<const std::byte> bytes) {
+  if (recorder_ != nullptr) recorder_->note(now(), own_, server_, bytes);
+  if (const std::error_code failed = socket_.send(bytes, server_)) {
     unsendable = failed.value();
   } else {
     ++stats_.sent;
-    figures_.sent(size);
+    figures_.sent(bytes.size());
     unsendable = 0;
   }
 }

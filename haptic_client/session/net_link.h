@@ -3,6 +3,7 @@
 
 #include "haptic_client/session/haptic_loop.h"
 #include "haptic_client/session/link_figures.h"
+#include "haptic_client/session/link_pace.h"
 #include "protocol/link_watcher.h"
 #include "protocol/recorder.h"
 #include "protocol/udp_socket.h"
@@ -23,6 +24,7 @@ class NetLink {
   /// Read when `run` has returned.
   const protocol::LinkStats& stats() const { return stats_; }
   const LinkFigures& figures() const { return figures_; }
+  const LinkPace& pace() const { return pace_; }
   /// Watcher of the link, for a watching thread.
   protocol::LinkWatcher watcher;
   const protocol::ClientSession& session() const { return session_; }
@@ -35,6 +37,8 @@ class NetLink {
   std::atomic<int> other_version{0};
   /// The `protocol::KeyMismatch` of the newest answer that was not of who has our key; -1: none came.
   std::atomic<int> key_mismatch{-1};
+  /// How much the link carries, for a watching thread.
+  std::atomic<LinkLevel> level{LinkLevel::kPacked};
   /// `errno` of the newest datagram, if the system would not send it: there is no way to the server.
   std::atomic<int> unsendable{0};
 
@@ -45,7 +49,9 @@ class NetLink {
   void pass_on(const protocol::Message& message, Time t);
   void greet();
   void release();
+  void send_ticks(std::span<const protocol::ToolState> ticks);
   void send(const protocol::Message& message);
+  void send(std::span<const std::byte> bytes);
 
   protocol::UdpSocket& socket_;
   protocol::Endpoint server_, own_;
@@ -56,6 +62,8 @@ class NetLink {
   protocol::ClientSession session_;
   bool ticking_ = false;  // tool states have come from the haptic loop
   int idle_timers_ = 0;   // looks at the session before that
+  LinkPace pace_;
+  std::vector<protocol::ToolState> waiting_;  // ticks that the next datagram takes along, oldest first
   protocol::LinkStats stats_;
   LinkFigures figures_;
 };

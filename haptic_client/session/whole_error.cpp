@@ -1,5 +1,6 @@
 #include "haptic_client/session/whole_error.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -39,6 +40,7 @@ Json whole_error_report(const Observation& observation) {
                  {"motion_percent", percent_of(published.time_step)},
                  {"judged_ticks", scoring.rendered().judged()},
                  {"unjudged_ticks", scoring.unjudged()},
+                 {"unsettled_ticks", scoring.unsettled()},
                  {"how",
                   {{"mesh", published.mesh.source == ErrorSource::kNone ? "none: this tissue has no mesh"
                                                                         : how_of(published.mesh)},
@@ -73,13 +75,19 @@ std::string total_text(const Json& rendered) {
                      two_figures(rendered["hand_percent"].get<double>()));
 }
 
-/// A line where the samples that all is held against were not settled themselves; else nothing.
-std::string unsettled_text(const Json& force) {
-  const auto flagged = force["flagged"].get<double>(), samples = force["samples"].get<double>();
-  return flagged > 0 ? fmt::format(
-                           "          {:.3g} % of the samples had no settled force: what was right there "
-                           "is not known, and the error is held against them all the same\n",
-                           100 * flagged / samples)
+double percent_of_ticks(const Json& rendered, const char* key) {
+  const double ticks = rendered["judged_ticks"].get<double>() + rendered["unjudged_ticks"].get<double>() +
+                       rendered["unsettled_ticks"].get<double>();
+  return 100 * rendered[key].get<double>() / std::max(ticks, 1.0);
+}
+
+/// A line where the samples themselves were not settled, so that they tell no truth; else nothing.
+std::string unsettled_text(const Json& rendered) {
+  const double percent = percent_of_ticks(rendered, "unsettled_ticks");
+  return percent > 0 ? fmt::format(
+                           "          {:.3g} % of the ticks could not be judged, since the server's own "
+                           "samples were not in balance\n",
+                           percent)
                      : "";
 }
 
@@ -99,13 +107,14 @@ void print_whole_error(const Json& tool) {
   const Json& rendered = tool["rendered"];
   if (rendered["laws"].empty()) return;
   if (rendered["hand_percent"].is_null()) {
-    fmt::print("  error   of the force on the hand: not known, as nothing was touched\n");
+    fmt::print("  error   of the force on the hand: not known, as nothing was touched{}\n{}",
+               rendered["unsettled_ticks"] > 0 ? " that could be judged" : "", unsettled_text(rendered));
   } else {
     fmt::print(
         "  error   of the force on the hand: {} of its root mean square in the mean; at the worst tick {} %, "
         "mesh and time step aside; a hand can tell about 10 %\n{}",
         total_text(rendered), two_figures(rendered["hand_max_percent"].get<double>()),
-        unsettled_text(tool["force"]));
+        unsettled_text(rendered));
   }
   const auto row = [&](const char* name, const char* percent, const std::string& how) {
     const std::string number =
@@ -120,12 +129,10 @@ void print_whole_error(const Json& tool) {
   row("outages", "outages_percent", "the law where no sample came for more than 300 ms");
   row("fades", "fades_percent", "soft start, and fades of forces that were old or not settled");
   row("limits", "limits_percent", "passivity, damping, largest force and slew");
-  const auto unjudged = rendered["unjudged_ticks"].get<double>(),
-             judged = rendered["judged_ticks"].get<double>();
-  if (unjudged > 0) {
+  if (const double unjudged = percent_of_ticks(rendered, "unjudged_ticks"); unjudged > 0) {
     fmt::print(
         "          {:.3g} % of the ticks could not be judged: no sample of their session came within 0.9 s\n",
-        100 * unjudged / (judged + unjudged));
+        unjudged);
   }
 }
 

@@ -215,7 +215,8 @@ typedef struct palpate_datagram {
 PALPATE_API int palpate_capture_open(const char* file, palpate_capture** capture, char* error,
                                      size_t error_size);
 
-/// The next UDP datagram; PALPATE_END behind the last one. `tool` is written with PALPATE_TOOL_STATE only,
+/// The next UDP datagram; PALPATE_END behind the last one. A datagram that holds several tool states, as slow
+/// links carry them, comes once for each, the oldest first. `tool` is written with PALPATE_TOOL_STATE only,
 /// `sample` with PALPATE_FORCE_SAMPLE only; both may be NULL. A capture that breaks off is PALPATE_FAILED
 /// there, and PALPATE_END from then on.
 PALPATE_API int palpate_capture_next(palpate_capture* capture, palpate_datagram* datagram,

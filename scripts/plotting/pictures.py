@@ -9,15 +9,11 @@ from pathlib import Path
 FORMATS = ("png", "pdf", "svg")
 DPI = 100
 
-# The colour-blind-safe palette of Okabe and Ito, without its yellow; (colour, line style).
-LAW_STYLES = {
-    "constant": ("#E69F00", "-"),
-    "linear_time": ("#0072B2", "-"),
-    "linear_position": ("#D55E00", "-"),
-    "linear_position_signed": ("#000000", (0, (2, 1.5))),
-}
-OTHER_STYLES = (("#009E73", "-"), ("#CC79A7", "-"), ("#56B4E9", "-"), ("#7F7F7F", "-"), ("#332288", "--"),
-                ("#AA4499", "--"), ("#999933", "--"))
+# A law has one colour everywhere: in these pictures, in studies and on the page.
+LAW_COLOURS = Path(__file__).resolve().parents[2] / "common" / "law_colours.json"
+LAW_STYLES = {law: (row["light"], (0, (4, 2)) if row["dashed"] else "-")
+              for law, row in json.loads(LAW_COLOURS.read_text(encoding="ascii")).items()}
+UNKNOWN_STYLE = ("#7f7f7f", ":")  # of a law that is not in that list
 # Keys whose words are not just the key with spaces.
 WORDS = {
     "linear_time": "linear in time", "linear_position": "linear in position",
@@ -36,8 +32,7 @@ def in_words(key):
 
 
 def style_of_laws(laws):
-    others = iter(OTHER_STYLES * len(laws))
-    return {law: LAW_STYLES.get(law) or next(others) for law in laws}
+    return {law: LAW_STYLES.get(law, UNKNOWN_STYLE) for law in laws}
 
 
 def quick_note(folder):

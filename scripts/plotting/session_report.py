@@ -183,12 +183,14 @@ def error_of(node):
         percent = felt[key].number(or_null=True)
         return f"{name} unknown".strip() if math.isnan(percent) else f"{name} {two_figures(percent)} %".strip()
 
-    flagged, samples = node["force"]["flagged"].number(), node["force"]["samples"].number()
+    unsettled = felt["unsettled_ticks"].number() if "unsettled_ticks" in felt else 0
+    ticks = unsettled + sum(felt[key].number() for key in ("judged_ticks", "unjudged_ticks"))
     total = "not known" if math.isnan(felt["total_percent"].number(or_null=True)) else f"at most {text('total_percent')}"
     return (f"error of the force on the hand, of its RMS: {total} in the mean   ("
             + ", ".join(text(key, name) for key, name in PARTS_OF_ERROR)
             + f"; worst tick {text('hand_max_percent')}"
-            + (f"; {two_figures(100 * flagged / samples)} % of the samples not settled)" if flagged else ")"))
+            + (f"; {two_figures(100 * unsettled / ticks)} % of the ticks could not be judged, since the server's own "
+               "samples were not in balance)" if unsettled else ")"))
 
 
 def read_tool(report, server, node, index, count):

@@ -115,6 +115,8 @@ return {
             {"asks_pages", 64},
             {"requests_errors", 128},
             {"in_pause", 256},
+            {"has_earlier_ticks", 512},
+            {"requests_uplink", 1024},
           },
         },
         {
@@ -213,6 +215,7 @@ return {
             {"contact_unsettled", 1048576},
             {"outside_reach", 2097152},
             {"strained", 4194304},
+            {"has_uplink", 8388608},
           },
         },
         {
@@ -482,6 +485,18 @@ return {
               name = "cuts",
               type = "u32",
               about = "in how many steps so far tissue has been removed. Where it differs from that of another sample, the two are of other surfaces.",
+            },
+          },
+          of = "force_sample.flags",
+        },
+        {
+          flag = "has_uplink",
+          steps = {
+            {name = "uplink.came", type = "u32", about = "datagrams, without duplicates"},
+            {
+              name = "uplink.lost",
+              type = "u32",
+              about = "sequence numbers up to the highest that came, without those that came",
             },
           },
           of = "force_sample.flags",

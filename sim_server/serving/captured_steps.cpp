@@ -8,7 +8,7 @@
 #include "common/contact/tool.h"
 #include "common/log.h"
 #include "protocol/capture.h"
-#include "protocol/codec.h"
+#include "protocol/earlier_ticks.h"
 
 namespace palpate::sim {
 using namespace protocol;
@@ -48,13 +48,14 @@ std::size_t read_captured_steps(const std::filesystem::path& capture,
     if (decode(captured.bytes, datagram) != Verdict::kAccepted) continue;
     const std::uint64_t number = datagram.header.session;
     if (sessions.size() >= kMostHeld && !sessions.contains(number)) continue;
-    if (const auto* state = std::get_if<ToolState>(&datagram.message)) {
+    for (const ToolState& state : ticks_of(datagram)) {
       HeldSession& session = sessions[number];
-      if (state->tick <= session.newest_tick) continue;
-      session.newest_tick = state->tick;
-      session.states[state->tick % kStatesStored] = *state;
-      on_state(*state);
-    } else if (const auto* sample = std::get_if<ForceSample>(&datagram.message)) {
+      if (state.tick <= session.newest_tick) continue;
+      session.newest_tick = state.tick;
+      session.states[state.tick % kStatesStored] = state;
+      on_state(state);
+    }
+    if (const auto* sample = std::get_if<ForceSample>(&datagram.message)) {
       HeldSession& session = sessions[number];
       if (sample->number <= session.newest_sample) continue;
       session.newest_sample = sample->number;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/clock.h"
+#include "protocol/earlier_ticks.h"
 
 namespace palpate::sim {
 using protocol::Datagram;
@@ -71,9 +72,11 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
     page_->tools[outcome.telemetry->tool].telemetry.push(*outcome.telemetry);
   if (outcome.tool_state != nullptr) {
     requested_[outcome.tool_state->tool] = socket_.requested();
-    pass_on(datagram.header.session, *outcome.tool_state);
+    pass_on(datagram.header.session, protocol::ticks_of(datagram));
   }
-  if (outcome.asking != nullptr) send_pages(*outcome.asking, t);
+  if (outcome.asking != nullptr) {
+    for (const protocol::ToolState& tick : protocol::ticks_of(datagram)) send_pages(tick, t);
+  }
   if (outcome.asking != nullptr || outcome.telemetry != nullptr) {
     PeerCounts& peer = peers_[outcome.asking != nullptr ? outcome.asking->tool : outcome.telemetry->tool];
     peer.received += stats_.received - received;
@@ -103,13 +106,14 @@ void NetLink::refuse(Verdict verdict, std::span<const std::byte> bytes, const En
     answer({.answer = {{{}, protocol::Refuse{{}, 0, protocol::RefuseReason::kVersion}}}}, to);
 }
 
-/// Passes a state on to the simulation, with the path that led there in this session.
-void NetLink::pass_on(std::uint64_t session, const protocol::ToolState& state) {
+/// Passes the newest of some ticks on to the simulation, with the path that led there in this session.
+void NetLink::pass_on(std::uint64_t session, std::span<const protocol::ToolState> ticks) {
+  const protocol::ToolState& state = ticks.back();
   SessionInput& input = inputs_[state.tool];
   if (input.session != session) input = {};
   input.session = session;
   input.state = state;
-  input.follow(state);
+  for (const protocol::ToolState& tick : ticks) input.follow(tick);
   mailboxes_.tools[state.tool].input.write(input);
 }
 
@@ -128,6 +132,19 @@ void NetLink::send_pages(const protocol::ToolState& state, Time t) {
   }
 }
 
+/// Adds what was heard of the tool's session, where the client asks for it and the sample has room.
+void NetLink::tell_uplink(protocol::ForceSample& sample) const {
+  using protocol::ForceSample;
+  const bool requested = (inputs_[sample.tool].state.flags & protocol::ToolState::kRequestsUplink) != 0;
+  const bool full = (sample.flags & ForceSample::kHasModes) != 0 &&
+                    (sample.flags &
+                     (ForceSample::kHasRelaxed | ForceSample::kHasModalLoads | ForceSample::kHasOthers)) != 0;
+  if (!requested || full) return;
+  const PeerCounts& peer = peers_[sample.tool];
+  sample.flags |= ForceSample::kHasUplink;
+  sample.uplink = {static_cast<std::uint32_t>(peer.received), static_cast<std::uint32_t>(peer.lost)};
+}
+
 void NetLink::on_forces() {
   for (ToolMailboxes& mailboxes : mailboxes_.tools) {
     ForceOutput output;
@@ -136,6 +153,7 @@ void NetLink::on_forces() {
     if (member == nullptr || member->session != output.session) continue;
     if (page_ != nullptr && page_->requests_telemetry)
       output.sample.flags |= protocol::ForceSample::kRequestsTelemetry;
+    tell_uplink(output.sample);
     send(*member, output.sample);
   }
   if (page_ != nullptr) send_pointers();

@@ -45,8 +45,9 @@ class NetLink {
   void on_datagram(std::span<const std::byte> bytes, const protocol::Endpoint& from);
   void refuse(protocol::Verdict verdict, std::span<const std::byte> bytes, const protocol::Endpoint& to);
   void on_forces();
+  void tell_uplink(protocol::ForceSample& sample) const;
   void send_pointers();
-  void pass_on(std::uint64_t session, const protocol::ToolState& state);
+  void pass_on(std::uint64_t session, std::span<const protocol::ToolState> ticks);
   void send_pages(const protocol::ToolState& state, Time t);
   void note_holders();
   void report_peers();

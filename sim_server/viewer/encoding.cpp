@@ -128,8 +128,10 @@ void write_triangles(std::uint32_t version, std::span<const Triangle> now, std::
   had.assign(now.begin(), now.end());
 }
 
-void write_sample(std::uint8_t tool, const SeenTool::Sample& sample, Bytes& out) {
+void write_sample(std::uint8_t tool, std::uint16_t missed, const SeenTool::Sample& sample, Bytes& out) {
   begin(out, Kind::kSample, tool);
+  out.resize(2);
+  append(out, missed);
   append(out, sample.t), append(out, sample.force), append(out, sample.flags);
 }
 

@@ -38,7 +38,8 @@ void write_surface(const SurfaceStamp& stamp, std::span<const std::uint16_t> now
 void write_triangles(std::uint32_t version, std::span<const Triangle> now, std::vector<Triangle>& had,
                      bool complete, Bytes& out);
 
-void write_sample(std::uint8_t tool, const SeenTool::Sample& sample, Bytes& out);
+/// `missed`: samples since the last one that this page got, which it did not.
+void write_sample(std::uint8_t tool, std::uint16_t missed, const SeenTool::Sample& sample, Bytes& out);
 void write_ticks(const ClientTicks& ticks, Bytes& out);
 
 /// `values` (n), J/m3 and not below 0, each as its share of the largest.

@@ -102,8 +102,10 @@ bool PageLink::next_sample(const Showing& showing, Bytes& out) {
   for (std::size_t i = 0; i < showing.scene->tools.size(); ++i) {
     const SeenTool::Sample& sample = showing.picture->tools[i].sample;
     if (sample.number == 0 || sample.number == received_.samples[i]) continue;
-    received_.samples[i] = sample.number;
-    write_sample(static_cast<std::uint8_t>(i), sample, out);
+    const std::uint64_t before = std::exchange(received_.samples[i], sample.number),
+                        missed = before > 0 && sample.number > before ? sample.number - before - 1 : 0;
+    write_sample(static_cast<std::uint8_t>(i),
+                 static_cast<std::uint16_t>(std::min<std::uint64_t>(missed, 65535)), sample, out);
     return true;
   }
   return false;

@@ -7,6 +7,7 @@ import argparse
 import json
 import math
 import os
+import pathlib
 import struct
 import sys
 import time
@@ -17,6 +18,7 @@ import fake_server
 import made_session
 from page_case import PageCase
 
+LAW_COLOURS = json.loads((pathlib.Path(__file__).resolve().parents[2] / "common/law_colours.json").read_text())
 BACK = (math.cos(0.95) * math.cos(0.5), -math.sin(0.95) * math.cos(0.5), math.sin(0.5))  # where the first view looks from
 
 RIGHT = (math.sin(0.95), math.cos(0.95), 0.0)
@@ -292,13 +294,15 @@ class PageTest(PageCase):
             if theme:
                 self.browser.prefer(prefers_color_scheme=theme)
             names = ["--bg", "--raised", "--scene", "--ink", "--muted", "--accent", "--good", "--warn", "--bad", "--sample",
-                     "--force", *(f"--law-{i}" for i in range(1, 9))]
+                     "--force"]
             colours = self.browser.evaluate(f"(s => {json.dumps(names)}.map(n => s.getPropertyValue(n).trim()))"
                                             "(getComputedStyle(document.documentElement))")
             colour = dict(zip(names, colours))
             for behind in ["--bg", "--raised", "--scene"]:
                 for name in ["--ink", "--muted", "--good", "--warn", "--bad", "--accent"]:
                     self.assertGreaterEqual(contrast(colour[name], colour[behind]), 4.5, f"{theme}: {name} on {behind}")
+            for law, row in LAW_COLOURS.items():
+                self.assertGreaterEqual(contrast(row[theme or "dark"], colour["--bg"]), 3, f"{theme}: {law}")
             for name in names[9:]:
                 self.assertGreaterEqual(contrast(colour[name], colour["--bg"]), 3, f"{theme}: {name}")
         self.no_errors()

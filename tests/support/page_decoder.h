@@ -18,6 +18,7 @@ struct PageDecoder {
   std::vector<double> positions;  // (3 n), m
   std::size_t surfaces = 0, entire_ones = 0, named = 0, cuts = 0, entire_cuts = 0;
   std::vector<double> sample_forces;
+  std::vector<int> samples_missed;              // just before each
   std::vector<double> tick_times, tick_forces;  // of all ticks so far; the force felt
 
   void take(std::span<const std::byte> message) {
@@ -122,7 +123,8 @@ struct PageDecoder {
     end();
   }
   void sample() {
-    all<std::uint8_t>(3);
+    get<std::uint8_t>();
+    samples_missed.push_back(get<std::uint16_t>());
     get<double>();
     sample_forces.push_back(static_cast<double>(get<float>()));
     get<std::uint32_t>();

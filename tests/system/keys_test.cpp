@@ -41,7 +41,7 @@ TEST_CASE("keys: with the same key a session is as ever, and every datagram of t
   const std::string capture = (bench.folder.path() / "F.pcap").string();
   Server server(bench.with_key());
   output_of("haptic_client",
-            client_arguments(server.address, bench.with_key({"--seconds", "1", "--report", bench.report,
+            client_arguments(server.address, bench.with_key({"--seconds", "2", "--report", bench.report,
                                                              "--record", capture})),
             0);
   const Json tool = read_json(bench.report)["tools"][0];

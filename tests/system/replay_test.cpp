@@ -88,6 +88,29 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a session over 256 kbit/s each way travels packed, and replays to the forces that were written") {
+  const TemporaryFolder folder;
+  const auto file = [&](const std::string& name) { return (folder.path() / name).string(); };
+  constexpr const char* kRelay = "127.0.0.1:45368";
+  Server server({"--record", file("server.pcap")});
+  Process relay("link_relay", {"--listen", kRelay, "--server", server.address, "--mbit", "0.256"});
+  REQUIRE(relay.wait_for("link_relay: from"));
+  output_of("haptic_client",
+            client_arguments(kRelay, {"--seconds", "8", "--record", file("client.pcap"), "--trace",
+                                      file("live.csv"), "--report", file("report.json")}),
+            0);
+  relay.signal(SIGINT);
+  CHECK(relay.wait() == 0);
+  const Json tool = read_json(file("report.json"))["tools"][0];
+  CHECK(tool["link"]["levels_s"]["full"] < 3);
+  CHECK(tool["link"]["sent"] < tool["loop"]["ticks"].get<int>() / 2);
+  CHECK(tool["link"]["uplink"]["came"] > 100);
+  const std::string live = bytes_of(file("live.csv"));
+  replay(file("client.pcap"), {"--client", kClient, "--out", file("again.csv")});
+  const bool same = bytes_of(file("again.csv")) == live;
+  CHECK(same);
+}
+
 TEST_CASE("a full disk stops the recording, not the session, and is said once") {
   Server server({"--record", "/dev/full"});
   const std::string said = output_of(

@@ -1,4 +1,5 @@
 // The keyboard: the habits of MuJoCo's users, and everything that the mouse can do. The list that h shows is this table.
+import { radii_of_notch } from "./wheel";
 
 export interface Deeds {
   pause(): void;
@@ -8,7 +9,7 @@ export interface Deeds {
   home(): void;
   zoom(factor: number): void;
   turn(yaw: number, pitch: number): void;
-  nudge(right: number, up: number, away: number): void;
+  nudge(right: number, up: number, away: number): void; // by shares of the tip's radius
   grip(held: boolean): void;
   choose_tool(number: number): void;
   picture(): void;
@@ -25,16 +26,24 @@ export const kKeys: [string[], string][] = [
   [["R"], "reset the view"],
   [["Shift", "arrows"], "turn the view"],
   [["+", "\u2212"], "zoom"],
-  [["W", "A", "S", "D"], "move the tool up, left, down, right, in the plane of the picture"],
+  [["W", "A", "S", "D"], "move the tool up, left, down, right by a quarter of its tip's radius"],
   [["E", "Q"], "push the tool away, pull it nearer"],
+  [["Shift", "W", "\u2026", "Q"], "the same by a tenth of that"],
   [["G"], "hold: close the grip"],
   [["1", "\u2026", "8"], "which tool the keys move"],
   [["P", "V", "L"], "picture, video, share"],
   [["H", "?"], "these keys"],
 ];
 
-const kNudge = 0.001; // m a press; ten times as much with none held would be a blow
 const kTurn = 0.1; // rad
+const kSteps: Record<string, [number, number, number]> = {
+  w: [0, 1, 0], // right, up, away
+  s: [0, -1, 0],
+  a: [-1, 0, 0],
+  d: [1, 0, 0],
+  e: [0, 0, 1],
+  q: [0, 0, -1],
+};
 
 export function listen_to_keys(canvas: HTMLCanvasElement, deeds: Deeds): void {
   document.addEventListener("keydown", (event) => {
@@ -55,7 +64,7 @@ function typing(target: EventTarget | null): boolean {
   return target instanceof HTMLInputElement || target instanceof HTMLSelectElement || target instanceof HTMLTextAreaElement;
 }
 
-function act(event: KeyboardEvent, deeds: Deeds): boolean {
+export function act(event: KeyboardEvent, deeds: Deeds): boolean {
   const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
   if (event.shiftKey && turn(key, deeds)) return true;
   if (/^[1-8]$/.test(key)) deeds.choose_tool(Number(key) - 1);
@@ -67,12 +76,7 @@ function act(event: KeyboardEvent, deeds: Deeds): boolean {
   else if (key === "r") deeds.home();
   else if (key === "+" || key === "=") deeds.zoom(0.9);
   else if (key === "-") deeds.zoom(1.1);
-  else if (key === "w") deeds.nudge(0, kNudge, 0);
-  else if (key === "s") deeds.nudge(0, -kNudge, 0);
-  else if (key === "a") deeds.nudge(-kNudge, 0, 0);
-  else if (key === "d") deeds.nudge(kNudge, 0, 0);
-  else if (key === "e") deeds.nudge(0, 0, kNudge);
-  else if (key === "q") deeds.nudge(0, 0, -kNudge);
+  else if (key in kSteps) step(kSteps[key], event.shiftKey, deeds);
   else if (key === "g") deeds.grip(true);
   else if (key === "p") deeds.picture();
   else if (key === "v") deeds.video();
@@ -80,6 +84,12 @@ function act(event: KeyboardEvent, deeds: Deeds): boolean {
   else if (key === "h" || key === "?") deeds.help();
   else return false;
   return true;
+}
+
+/** By a press, in shares of the tip's radius: a notch of the wheel, which with Shift is finer. */
+function step([right, up, away]: [number, number, number], fine: boolean, deeds: Deeds): void {
+  const size = radii_of_notch(fine);
+  deeds.nudge(size * right, size * up, size * away);
 }
 
 function turn(key: string, deeds: Deeds): boolean {

@@ -39,6 +39,7 @@ export interface Sample {
   kind: "sample";
   tool: number;
   t: number; // s
+  missed: number; // samples just before it that this page did not get
   force: number; // N
   flags: number;
 }
@@ -174,7 +175,7 @@ function sample(view: DataView): Sample | null {
   const t = view.getFloat64(4, kLittle);
   const force = view.getFloat32(12, kLittle);
   if (!Number.isFinite(t) || !Number.isFinite(force)) return null;
-  return { kind: "sample", tool: view.getUint8(1), t, force, flags: view.getUint32(16, kLittle) };
+  return { kind: "sample", tool: view.getUint8(1), t, missed: view.getUint16(2, kLittle), force, flags: view.getUint32(16, kLittle) };
 }
 
 function field(view: DataView): Field | null {

@@ -1,6 +1,7 @@
 // One plot against time: lines, and impulses beneath them as in Picinbono and Lombardo's (1999) figure.
 import uPlot from "uplot";
 import { nice_above } from "./colours";
+import { missed_times } from "./series";
 import { colour_of } from "./theme";
 
 export interface Line {
@@ -13,6 +14,7 @@ export interface Line {
 export interface Impulses {
   times: (number | null)[];
   values: (number | null)[];
+  missed: (number | null)[]; // how many came just before, of which only that is known
   colour: string;
 }
 
@@ -135,6 +137,13 @@ export class Plot {
     ctx.globalAlpha = 0.85;
     ctx.stroke();
     ctx.fill();
+    ctx.beginPath();
+    for (const t of missed_times(this.impulses.times, this.impulses.missed)) {
+      const x = plot.valToPos(t, "x", true);
+      ctx.moveTo(x + dot, zero - dot);
+      ctx.arc(x, zero - dot, dot, 0, 2 * Math.PI);
+    }
+    ctx.stroke();
     ctx.restore();
   }
 }

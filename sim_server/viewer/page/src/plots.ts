@@ -55,7 +55,7 @@ export class Plots {
     this.make_chips(series);
     this.draw_force(series, from, to);
     const names = series?.laws ?? [];
-    const errors = names.map((name, i) => this.line(name, law_colour(i), 1.5));
+    const errors = names.map((name) => this.line(name, law_colour(name), 1.5));
     this.error_.set(errors, series ? series.errors.since(from, kMostRows) : [[]], from, to);
     const loop = series ? series.loop.since(from, kMostRows) : [[], [], []];
     const ink = colour_of("--ink");
@@ -67,12 +67,12 @@ export class Plots {
   private draw_force(series: ToolSeries | undefined, from: number, to: number): void {
     const columns = series ? series.ticks.since(from, kMostRows) : [[], []];
     const [times, felt, ...laws] = columns;
-    const samples = series ? series.samples.since(from, 1000) : [[], []];
+    const samples = series ? series.samples.since(from, 1000) : [[], [], []];
     this.force_.impulses = this.hidden_.has("samples")
       ? null
-      : { times: samples[0], values: samples[1], colour: colour_of("--sample") };
+      : { times: samples[0], values: samples[1], missed: samples[2], colour: colour_of("--sample") };
     const names = laws.map((_, i) => series?.laws[i] ?? `law ${i + 1}`);
-    const lines = names.map((name, i) => this.line(name, law_colour(i), 1.25));
+    const lines = names.map((name) => this.line(name, law_colour(name), 1.25));
     this.data_ = [times, ...laws, felt];
     this.force_.set([...lines, this.line("felt", colour_of("--ink"), 2)], this.data_, from, to);
     this.show_values();
@@ -90,7 +90,7 @@ export class Plots {
     this.chips_key_ = key;
     this.laws_.replaceChildren();
     this.chips_ = names.map((name, i) => {
-      const colour = i < laws.length ? law_colour(i) : colour_of(name === "felt" ? "--ink" : "--sample");
+      const colour = i < laws.length ? law_colour(name) : colour_of(name === "felt" ? "--ink" : "--sample");
       return this.chip(name, colour);
     });
   }
@@ -101,6 +101,7 @@ export class Plots {
     button.setAttribute("aria-pressed", String(!this.hidden_.has(name)));
     const swatch = make("span", name === "samples" ? "swatch impulse" : "swatch");
     swatch.style.background = colour;
+    if (name === "samples") button.title = "Forces that the server computed. A ring: it computed one that this page did not get.";
     const value = make("span", "value");
     button.append(swatch, make("span", "name", name.replaceAll("_", " ")), value);
     button.onclick = () => {

@@ -67,3 +67,16 @@ export class Series {
     return ((this.first_ + row) % this.capacity) * (this.columns + 1);
   }
 }
+
+const kMostRings = 200; // in one gap
+
+/** Where the samples must have been that are not there: evenly between those that are. */
+export function missed_times(times: (number | null)[], missed: (number | null)[]): number[] {
+  const all: number[] = [];
+  for (let i = 1; i < times.length; i++) {
+    const [from, to, count] = [times[i - 1], times[i], Math.min(missed[i] ?? 0, kMostRings)];
+    if (from === null || to === null) continue;
+    for (let k = 1; k <= count; k++) all.push(from + ((to - from) * k) / (count + 1));
+  }
+  return all;
+}

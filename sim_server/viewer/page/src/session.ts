@@ -11,7 +11,7 @@ const kSlowRows = 1 << 12;
 export interface ToolSeries {
   laws: string[];
   ticks: Series; // force felt, then each law, N
-  samples: Series; // force computed, N
+  samples: Series; // force computed, N; samples just before it that this page did not get
   errors: Series; // of each law, percent
   loop: Series; // age of the force, loop period, ms
 }
@@ -62,7 +62,7 @@ export class Session {
       found = {
         laws: found?.laws ?? [],
         ticks: new Series(count + 1, kTickRows),
-        samples: found?.samples ?? new Series(1, kSlowRows),
+        samples: found?.samples ?? new Series(2, kSlowRows),
         errors: new Series(count, kSlowRows),
         loop: found?.loop ?? new Series(2, kSlowRows),
       };
@@ -102,7 +102,7 @@ export class Session {
       case "ticks":
         return this.take_ticks(message);
       case "sample":
-        this.series(message.tool).samples.push(message.t, [message.force]);
+        this.series(message.tool).samples.push(message.t, [message.force, message.missed]);
         this.t = Math.max(this.t, message.t);
         return "ticks";
       case "refused":

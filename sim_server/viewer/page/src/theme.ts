@@ -1,4 +1,5 @@
 // Colours and motion as the reader wants them: the style sheet has them, the picture and the plots ask here.
+import kLawColours from "../../../../common/law_colours.json";
 
 const kLight = matchMedia("(prefers-color-scheme: light)");
 const kStill = matchMedia("(prefers-reduced-motion: reduce)");
@@ -8,9 +9,10 @@ export function colour_of(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim() || "#888888";
 }
 
-/** The colour of a law by its place in the list. */
-export function law_colour(index: number): string {
-  return colour_of(`--law-${(index % 8) + 1}`);
+/** The colour that a law has everywhere: here, in pictures and in studies. */
+export function law_colour(name: string): string {
+  const found = (kLawColours as Record<string, { light: string; dark: string }>)[name];
+  return found?.[kLight.matches ? "light" : "dark"] ?? colour_of("--muted");
 }
 
 export function on_theme_change(react: () => void): void {

@@ -78,12 +78,16 @@ export class Touch {
     this.shown_until_ = 0;
   }
 
-  /** By keys: right, up and away from the camera, m. */
+  /** By keys: right, up and away from the camera, as shares of the tip's radius. */
   nudge(right: number, up: number, away: number, now: number): void {
     if (!this.view_.tools[this.tool]) return;
     if (!this.active && now > this.shown_until_) this.take_up();
     const axes = this.view_.orbit.axes();
-    this.wanted.addScaledVector(axes.right, right).addScaledVector(axes.up, up).addScaledVector(axes.back, -away);
+    const radius = this.radius_of_(this.tool);
+    this.wanted
+      .addScaledVector(axes.right, right * radius)
+      .addScaledVector(axes.up, up * radius)
+      .addScaledVector(axes.back, -away * radius);
     this.shown_until_ = now + kLinger;
     this.unsent_ = true;
   }

@@ -17,7 +17,12 @@ export function pixels_of(turn: Turn): number {
   return pixels * (turn.deltaMode === 1 ? 33 : turn.deltaMode === 2 ? 400 : 1);
 }
 
+/** Of the tip's radius: a notch of the wheel, or a press of a key. */
+export function radii_of_notch(fine: boolean): number {
+  return kShare * (fine ? kFine : 1);
+}
+
 /** Shares of the tip's radius. Up, away from the one who turns it, pushes the tool away as well. */
 export function radii_of(turn: Turn): number {
-  return ((-pixels_of(turn) * kShare) / kNotch) * (turn.shiftKey ? kFine : 1);
+  return (-pixels_of(turn) / kNotch) * radii_of_notch(turn.shiftKey);
 }

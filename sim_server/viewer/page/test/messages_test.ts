@@ -45,8 +45,8 @@ test("ticks: felt first, then the laws, a tick in a row", () => {
 });
 
 test("a sample and a field", () => {
-  const sample = decode(new Bytes().u8(4, 2, 0, 0).f64(1.5).f32(0.25).u32(8).done());
-  assert.deepEqual(sample, { kind: "sample", tool: 2, t: 1.5, force: 0.25, flags: 8 });
+  const sample = decode(new Bytes().u8(4, 2, 3, 1).f64(1.5).f32(0.25).u32(8).done());
+  assert.deepEqual(sample, { kind: "sample", tool: 2, t: 1.5, missed: 259, force: 0.25, flags: 8 });
   const field = decode(new Bytes().u8(5, 1, 0, 0).u32(7, 2).f32(100).u8(0, 255).done());
   assert.ok(field?.kind === "field");
   assert.deepEqual([field.which, field.version, field.largest, ...field.share], [1, 7, 100, 0, 255]);

@@ -85,6 +85,11 @@ TEST_CASE("commtest: bursts, pages that never come and a narrow uplink are named
   CHECK(grade_of(link) == Grade::kWarn);
   CHECK_THAT(judge(link).reasons.back(), Catch::Contains("your uplink carries 0.4 of the 0.8 Mbit/s"));
   CHECK_THAT(remedies(link).at(0), Catch::Contains("rate_hz"));
+  link = good();
+  link.sent_mbit_s = 0.19, link.slow_percent = 80;
+  CHECK(grade_of(link) == Grade::kWarn);
+  CHECK_THAT(judge(link).reasons.back(), Catch::Contains("the link is slow: in 80 % of the time"));
+  CHECK_THAT(remedies(link).at(0), Catch::Contains("2 Mbit/s"));
 }
 
 TEST_CASE("commtest: a good link passes, and each fault has its grade and its reason") {

@@ -23,12 +23,15 @@ struct Session {
       : pipeline(find_row(extrapolators(), "constant", "law", "test").make(), workspace, {}),
         observation(laws, kRate, "test", workspace, 0) {}
 
+  bool flags = false;  // the samples from now on
+
   void tick(double newton, bool lost = false, std::uint16_t buttons = 0) {
     const Time t = 1s + 2ms * ticks;
     std::optional<protocol::ForceSample> sample;
     if (ticks++ % kTicksPerSample == 0 && !lost) {
       sample = protocol::ForceSample{.number = ++samples, .tool_t_ns = t.count()};
       sample->f_W = {0, newton, 0};
+      if (flags) sample->flags = protocol::ForceSample::kFlagged | protocol::ForceSample::kNotBalanced;
     }
     observation.tick(pipeline.tick({.t = t, .buttons = buttons}, sample ? &*sample : nullptr), {}, 0);
   }
@@ -120,4 +123,20 @@ TEST_CASE("rendered error: a scaled workspace is no error") {
   Session session({}, workspace);
   session.ticks_of(1, 10);
   CHECK_THAT(session.rendered().parts().hand.mean_percent, WithinRel(5, 0.01));
+}
+
+TEST_CASE("rendered error: a sample that is not settled is no truth, and the ticks beside it are counted") {
+  Session session({"constant"});
+  session.ticks_of(1, 2);
+  const RenderedErrorParts before = session.rendered().parts();
+  session.flags = true;
+  session.ticks_of(4, 0.06);  // three samples of 4 N
+  session.flags = false;
+  session.ticks_of(1, 2);
+  // From the last settled sample before to the first one after: four intervals of ten ticks.
+  CHECK(session.observation.scoring().unsettled() == 40);
+  CHECK(session.observation.scoring().unjudged() == 0);
+  CHECK(session.rendered().judged() == 1000 - 10 + 1000 - 10);
+  CHECK(session.rendered().parts().hand.max_of_rms_percent == Approx(before.hand.max_of_rms_percent));
+  CHECK(session.observation.scoring().metrics(0).max_of_rms_percent < 1e-9);
 }

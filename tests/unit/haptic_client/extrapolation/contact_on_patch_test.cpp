@@ -125,6 +125,26 @@ TEST_CASE(
   CHECK(unanswered > 0);
 }
 
+TEST_CASE("contact on a patch: at 1000 and 4000 Hz friction of 10 takes a quarter of a tick at most") {
+  const OnBlock block;
+  const Surface surface = block.under(0.005, 10);
+  for (const double rate_hz : {1000.0, 4000.0}) {
+    ContactOnPatch contact;
+    double most = 0;
+    for (int i = 0; i < 4000; ++i) {  // up to 0.2 m/s
+      contact.bear(from_seconds(1 / rate_hz));
+      const double angle = 50 / rate_hz * i;
+      const Vec3 p(0.004 * std::sin(angle), 0.004 - 0.0025 * std::sin(0.73 * angle),
+                   0.003 * std::cos(0.61 * angle));
+      contact.move_to(surface, p);
+      if (i > 100) most = std::max(most, contact.work());
+    }
+    CAPTURE(rate_hz, most);
+    CHECK(most <= 1.01 * 2e9 * 0.25 / rate_hz);
+    CHECK(most > 0.2 * 2e9 * 0.25 / rate_hz);  // else this says nothing
+  }
+}
+
 TEST_CASE(
     "contact on a patch: friction of 10 takes no more of a tick than it bears, usual friction never so "
     "much") {

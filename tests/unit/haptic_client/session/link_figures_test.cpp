@@ -43,3 +43,14 @@ TEST_CASE("link figures: bytes of the first second are those within a second of 
   CHECK(figures.bytes_down == 180);
   CHECK(figures.early_bytes_down == 150);
 }
+
+TEST_CASE("link figures: what the server heard is what it told last") {
+  LinkFigures figures;
+  ForceSample sample{.number = 1};
+  sample.flags = ForceSample::kHasUplink;
+  sample.uplink = {300, 200};
+  figures.sample(sample, 1s);
+  figures.sample({.number = 2}, 2s);  // of a server that tells nothing
+  CHECK(figures.uplink.came == 300);
+  CHECK(figures.uplink.lost == 200);
+}

@@ -96,6 +96,22 @@ TEST_CASE("viewer: a page gets the scene, the topology, the state and the whole 
   CHECK(session.page.positions[0] == Approx(0.5).margin(1e-4));
 }
 
+TEST_CASE("viewer: a page is told how many samples it missed, and none of those that were never made") {
+  Session session;
+  session.link.greet(false);
+  session.step(1);
+  session.take_all();
+  session.step(2);
+  session.step(3);
+  session.step(5);  // 2, 3 and 4 were made, too
+  session.take_all();
+  session.step(6);
+  session.take_all();
+  session.step(1);  // another session
+  session.take_all();
+  CHECK(session.page.samples_missed == std::vector<int>{0, 3, 0, 0});
+}
+
 TEST_CASE("viewer: a page that takes nothing for a while gets the newest, not what it missed") {
   Session session;
   session.link.greet(false);

@@ -1,0 +1,181 @@
+#include "haptic_client/session/link_pace.h"
+
+#include <cmath>
+#include <vector>
+
+#include "common/ages.h"
+#include "protocol/earlier_ticks.h"
+#include "protocol/link_simulator.h"
+#include "tests/support/catch.h"
+
+using namespace palpate;
+using namespace palpate::client;
+using namespace palpate::protocol;
+using namespace std::chrono_literals;
+
+namespace {
+
+struct PacedSession {
+  Time oldest{};            // sample, once the first second is over
+  std::uint64_t faded = 0;  // ticks after it whose newest sample is older than `kOutage`
+  std::uint64_t samples = 0, ticks = 0, ticks_heard = 0;
+  LinkLevel level{};
+  std::array<Time, kLinkLevels> spent{};
+};
+
+/// A hand at 500 Hz and a server of 30 steps a second, in virtual time, over a link each way.
+class PacedPair {
+ public:
+  PacedPair(const LinkConditions& up, const LinkConditions& down) : up_(up, 1), down_(down, 2) {}
+
+  PacedSession run(Time span) {
+    for (Time t = 10s; t < 10s + span; t += 2ms) {
+      take_samples(t);
+      tick(t);
+      serve(t);
+    }
+    session_.level = pace_.level();
+    session_.spent = pace_.spent();
+    return session_;
+  }
+
+ private:
+  void tick(Time t) {
+    ToolState state{.tick = ++session_.ticks, .newest_sample = newest_.number, .t_ns = t.count()};
+    const double s = to_seconds(t);
+    state.p_W = {0.01 * std::sin(3 * s), 0.02 * std::cos(2 * s), 0.005 * std::sin(7 * s)};
+    state.v_W = {0.03 * std::cos(3 * s), -0.04 * std::sin(2 * s), 0.035 * std::cos(7 * s)};
+    state.flags = ToolState::kRequestsTangent | ToolState::kRequestsAhead | ToolState::kRequestsErrors;
+    if (t > 11s && newest_.number > 0) {
+      const Time age = t - Time{newest_.tool_t_ns};
+      session_.oldest = std::max(session_.oldest, age);
+      session_.faded += age > kOutage ? 1 : 0;
+    }
+    pace_.shrink(state);
+    if (!pace_.packs_ticks()) waiting_.clear();
+    waiting_.push_back(state);
+    if (!pace_.is_due(t, 30)) return;
+    std::array<std::byte, kMaxDatagram> bytes{};
+    const std::size_t size = encode_ticks({.session = 9, .sequence = ++sent_}, waiting_, bytes);
+    REQUIRE(size > 0);
+    up_.send({bytes.data(), size}, t);
+    waiting_.clear();
+  }
+  void serve(Time t) {
+    while (const auto bytes = up_.receive(t)) {
+      Datagram datagram;
+      REQUIRE(decode(*bytes, datagram) == Verdict::kAccepted);
+      const auto ticks = ticks_of(datagram);
+      session_.ticks_heard += ticks.size();
+      came_ += 1;
+      highest_ = std::max(highest_, datagram.header.sequence);
+      if (ticks.back().tick > answered_) heard_ = ticks.back();
+    }
+    if (t < next_step_) return;
+    next_step_ = std::max(next_step_ + 33'333us, t);
+    if (heard_.tick <= answered_) return;
+    answered_ = heard_.tick;
+    ForceSample sample{.number = ++numbers_, .tool_tick = heard_.tick, .tool_t_ns = heard_.t_ns};
+    if ((heard_.flags & ToolState::kRequestsTangent) != 0) sample.flags |= ForceSample::kHasTangent;
+    if ((heard_.flags & ToolState::kRequestsAhead) != 0) sample.flags |= ForceSample::kHasAhead;
+    if ((heard_.flags & ToolState::kRequestsErrors) != 0) sample.flags |= ForceSample::kHasErrors;
+    sample.flags |= ForceSample::kHasUplink;
+    sample.uplink = {static_cast<std::uint32_t>(came_), static_cast<std::uint32_t>(highest_ - came_)};
+    std::array<std::byte, kMaxDatagram> bytes{};
+    down_.send({bytes.data(), encode({.session = 9, .sequence = numbers_}, sample, bytes)}, t);
+  }
+  void take_samples(Time t) {
+    while (const auto bytes = down_.receive(t)) {
+      Datagram datagram;
+      REQUIRE(decode(*bytes, datagram) == Verdict::kAccepted);
+      const auto& sample = std::get<ForceSample>(datagram.message);
+      if (sample.number <= newest_.number) continue;
+      newest_ = sample;
+      ++session_.samples;
+      pace_.sample(sample, t - Time{sample.tool_t_ns}, t);
+    }
+  }
+
+  LinkSimulator up_, down_;
+  LinkPace pace_;
+  std::vector<ToolState> waiting_;
+  ForceSample newest_;
+  ToolState heard_;
+  Time next_step_ = 10s;
+  std::uint64_t sent_ = 0, came_ = 0, highest_ = 0, answered_ = 0, numbers_ = 0;
+  PacedSession session_;
+};
+
+/// Of a line of so many kbit/s each way.
+PacedSession paced(double kbit_s, Time span = 60s) {
+  const LinkConditions line{.delay = 0.01, .bandwidth = 1e3 * kbit_s / 8};
+  return PacedPair(line, line).run(span);
+}
+
+Time spent(const PacedSession& session, LinkLevel level) {
+  return session.spent[static_cast<std::size_t>(level)];
+}
+
+}  // namespace
+
+TEST_CASE("link pace: a good link carries each tick in a datagram of its own from the second second on") {
+  for (const double delay : {0.001, 0.15}) {
+    const PacedSession session =
+        PacedPair({.delay = delay, .jitter = 0.01, .loss = 0.05}, {.delay = delay, .jitter = 0.01}).run(30s);
+    CHECK(session.level == LinkLevel::kFull);
+    CHECK(to_seconds(spent(session, LinkLevel::kFull)) > 28);
+  }
+}
+
+TEST_CASE("link pace: no force fades at 512 and at 256 kbit/s, and every tick arrives but those of a trial") {
+  for (const double kbit_s : {512.0, 256.0}) {
+    const PacedSession session = paced(kbit_s);
+    CAPTURE(kbit_s, to_seconds(session.oldest));
+    CHECK(session.faded == 0);
+    CHECK(session.samples > 29 * 60);
+    CHECK(static_cast<double>(session.ticks_heard) > 0.98 * static_cast<double>(session.ticks));
+    CHECK(spent(session, LinkLevel::kLean) + spent(session, LinkLevel::kSparse) == 0s);
+  }
+}
+
+TEST_CASE("link pace: there is a force at 64 kbit/s, which fades in trials alone") {
+  const PacedSession session = paced(64, 120s);
+  CHECK(session.samples > 25 * 120);
+  CHECK(static_cast<double>(session.faded) < 0.05 * static_cast<double>(session.ticks));
+  CHECK(to_seconds(spent(session, LinkLevel::kSparse)) > 100);
+}
+
+TEST_CASE("link pace: a line that becomes wider is used again") {
+  // One that is narrow for as long as another client fills it: a queue of 0.3 s that another empties.
+  PacedPair pair({.delay_steps = {{10s, 0.01}, {12s, 0.15}, {13s, 0.2}, {14s, 0.25}, {20s, 0.01}}},
+                 {.delay = 0.01});
+  const PacedSession session = pair.run(90s);
+  CHECK(session.level == LinkLevel::kFull);
+}
+
+TEST_CASE("link pace: neither loss alone, nor a way that becomes longer at once, takes anything away") {
+  const PacedSession lossy = PacedPair({.delay = 0.02, .loss = 0.4}, {.delay = 0.02, .loss = 0.2}).run(30s);
+  CHECK(to_seconds(spent(lossy, LinkLevel::kFull)) > 28);
+  const PacedSession longer =
+      PacedPair({.delay = 0.01}, {.delay_steps = {{10s, 0.01}, {20s, 0.12}}}).run(30s);
+  CHECK(to_seconds(spent(longer, LinkLevel::kFull)) > 28);
+}
+
+TEST_CASE("link pace: a slow server and a pause are no slow link") {
+  LinkPace pace;
+  ForceSample sample{.number = 0};
+  Time t = 10s;
+  const auto tell = [&](Time age, Time step, std::uint32_t flags) {
+    ++sample.number;
+    sample.step_ns = step.count();
+    sample.flags = flags;
+    pace.sample(sample, age, t);
+    t += 50ms;
+  };
+  for (int i = 0; i < 60; ++i) tell(30ms, 5ms, 0);
+  REQUIRE(pace.level() == LinkLevel::kFull);
+  for (int i = 0; i < 100; ++i) tell(30ms + i * 5ms, i * 5ms, 0);  // steps that take longer and longer
+  CHECK(pace.level() == LinkLevel::kFull);
+  for (int i = 0; i < 100; ++i) tell(30ms + i * 100ms, 5ms, ForceSample::kPaused);
+  CHECK(pace.level() == LinkLevel::kFull);
+}
