@@ -91,6 +91,7 @@ ModelTraits CuttableMotion::traits() noexcept {
   return {.instants = instants_,
           .leading_force = true,
           .publishes_tangents = false,
+          .added_mass = scaling_.fraction,
           .columns = &*compliance_,
           .cuttable = this,
           .client = publisher_ ? this : nullptr,
