@@ -10,6 +10,9 @@ namespace {
 using Bytes = std::span<const std::byte>;
 
 constexpr std::uint16_t kEtherIpv4 = 0x0800, kEtherIpv6 = 0x86dd, kEtherNone = 0;
+constexpr std::uint16_t kEtherBridged = 0x6558;     // of GRE: an Ethernet frame
+constexpr std::uint16_t kEtherPppSession = 0x8864;  // PPPoE, RFC 2516
+constexpr std::uint16_t kVxlanPort = 4789;          // RFC 7348
 // Bytes (RFC 791, 8200, 768).
 constexpr std::size_t kIpv4Header = 20, kIpv6Header = 40, kUdpHeader = 8, kMaxLengthField = 65535;
 
@@ -36,6 +39,10 @@ std::optional<Carried> behind_header(Bytes frame, std::size_t type_at, std::size
   return Carried{u16(frame, type_at), frame.subspan(size)};
 }
 
+std::optional<Carried> behind_ethernet(Bytes frame) {
+  return behind_header(frame, 12, 14);
+}
+
 std::optional<Carried> behind_loopback(Bytes frame) {
   if (frame.size() < 4) return {};
   // One of the two halves of a small number is 0, whatever the order of bytes.
@@ -54,7 +61,7 @@ std::optional<Carried> by_version(Bytes frame) {
 std::optional<Carried> behind_link(LinkType link, Bytes frame) {
   switch (link) {
     case LinkType::kEthernet:
-      return behind_header(frame, 12, 14);
+      return behind_ethernet(frame);
     case LinkType::kCooked:
       return behind_header(frame, 14, 16);
     case LinkType::kCooked2:
@@ -74,6 +81,25 @@ std::optional<Carried> behind_link(LinkType link, Bytes frame) {
   return Carried{kEtherNone, frame};
 }
 
+/// Of version 1, type 1, code 0: a session's data.
+std::optional<Carried> behind_pppoe(Bytes frame) {
+  if (frame.size() < 8) return {};
+  const std::uint16_t ppp = u16(frame, 6);
+  const bool data = u16(frame, 0) == 0x1100;
+  const std::uint16_t type = ppp == 0x0021 ? kEtherIpv4 : ppp == 0x0057 ? kEtherIpv6 : kEtherNone;
+  return Carried{data ? type : kEtherNone, frame.subspan(8)};
+}
+
+/// GRE, RFC 2784 and 2890: checksum, key and sequence number are there as the first bits say.
+std::optional<Carried> behind_gre(Bytes frame) {
+  if (frame.size() < 4) return {};
+  const std::uint16_t flags = u16(frame, 0);
+  if ((flags & 0x7) != 0 || (flags & 0x4000) != 0) return Carried{kEtherNone, frame};  // version 1, routing
+  const std::size_t optional =
+      4 * std::size_t{((flags >> 15) & 1U) + ((flags >> 13) & 1U) + ((flags >> 12) & 1U)};
+  return behind_header(frame, 2, 4 + optional);
+}
+
 bool is_vlan(std::uint16_t type) {
   return type == 0x8100 || type == 0x88a8 || type == 0x9100;  // 802.1Q, 802.1ad, QinQ before 802.1ad
 }
@@ -91,16 +117,43 @@ FrameVerdict parse_udp(Bytes captured, std::size_t declared, UdpFrame& out) {
   return FrameVerdict::kDatagram;
 }
 
-FrameVerdict parse_ipv4(Bytes packet, UdpFrame& out) {
+FrameVerdict parse_carried(std::optional<Carried> carried, int wrappings, UdpFrame& out);
+
+/// True for what carries our datagrams, itself or in a tunnel.
+bool is_carrier(std::uint8_t protocol) {
+  return protocol == IPPROTO_UDP || protocol == IPPROTO_GRE || protocol == IPPROTO_IPIP ||
+         protocol == IPPROTO_IPV6;
+}
+
+/// `captured`, `declared`: as `parse_udp`. `wrappings`: those around it.
+FrameVerdict parse_payload(std::uint8_t protocol, Bytes captured, std::size_t declared, int wrappings,
+                           UdpFrame& out) {
+  const Bytes inner = captured.first(std::min(captured.size(), declared));
+  if (protocol == IPPROTO_IPIP) return parse_carried(Carried{kEtherIpv4, inner}, wrappings + 1, out);
+  if (protocol == IPPROTO_IPV6) return parse_carried(Carried{kEtherIpv6, inner}, wrappings + 1, out);
+  if (protocol == IPPROTO_GRE) {
+    std::optional<Carried> carried = behind_gre(inner);
+    if (carried && carried->type == kEtherBridged) carried = behind_ethernet(carried->bytes);
+    return parse_carried(carried, wrappings + 1, out);
+  }
+  const FrameVerdict verdict = parse_udp(captured, declared, out);
+  const Bytes payload = out.payload;
+  const bool vxlan = verdict == FrameVerdict::kDatagram && out.to.port == kVxlanPort && payload.size() >= 8 &&
+                     u8(payload, 0) == 0x08 && u8(payload, 7) == 0;
+  return vxlan ? parse_carried(behind_ethernet(payload.subspan(8)), wrappings + 1, out) : verdict;
+}
+
+FrameVerdict parse_ipv4(Bytes packet, int wrappings, UdpFrame& out) {
   if (packet.size() < kIpv4Header) return FrameVerdict::kMalformed;
   const std::size_t header = 4 * (u8(packet, 0) & 0xfu), total = u16(packet, 2);
   if (u8(packet, 0) >> 4 != 4 || header < kIpv4Header) return FrameVerdict::kMalformed;
-  if (u8(packet, 9) != IPPROTO_UDP) return FrameVerdict::kOtherTraffic;
+  if (!is_carrier(u8(packet, 9))) return FrameVerdict::kOtherTraffic;
   if (total < header || packet.size() < header) return FrameVerdict::kMalformed;
   if ((u16(packet, 6) & 0x3fff) != 0) return FrameVerdict::kFragment;  // more fragments, or an offset
+  out.from = out.to = {};
   std::copy_n(packet.begin() + 12, 4, reinterpret_cast<std::byte*>(out.from.address.data()));
   std::copy_n(packet.begin() + 16, 4, reinterpret_cast<std::byte*>(out.to.address.data()));
-  return parse_udp(packet.subspan(header), total - header, out);
+  return parse_payload(u8(packet, 9), packet.subspan(header), total - header, wrappings, out);
 }
 
 bool is_extension(std::uint8_t header) {
@@ -108,7 +161,7 @@ bool is_extension(std::uint8_t header) {
          header == IPPROTO_DSTOPTS;
 }
 
-/// Moves `at` behind the extension headers and `next` to what they carry. `kDatagram`: it is UDP.
+/// Moves `at` behind the extension headers and `next` to what they carry. `kDatagram`: it may carry one.
 FrameVerdict skip_extensions(Bytes packet, std::uint8_t& next, std::size_t& at) {
   while (is_extension(next)) {
     if (packet.size() - at < 8) return FrameVerdict::kMalformed;
@@ -116,15 +169,15 @@ FrameVerdict skip_extensions(Bytes packet, std::uint8_t& next, std::size_t& at) 
     const std::size_t size = fragment ? 8 : 8 * (u8(packet, at + 1) + std::size_t{1});
     if (packet.size() - at < size) return FrameVerdict::kMalformed;
     next = u8(packet, at);
-    if (fragment && (u16(packet, at + 2) & 0xfff9) != 0 && (next == IPPROTO_UDP || is_extension(next))) {
+    if (fragment && (u16(packet, at + 2) & 0xfff9) != 0 && (is_carrier(next) || is_extension(next))) {
       return FrameVerdict::kFragment;
     }
     at += size;
   }
-  return next == IPPROTO_UDP ? FrameVerdict::kDatagram : FrameVerdict::kOtherTraffic;
+  return is_carrier(next) ? FrameVerdict::kDatagram : FrameVerdict::kOtherTraffic;
 }
 
-FrameVerdict parse_ipv6(Bytes packet, UdpFrame& out) {
+FrameVerdict parse_ipv6(Bytes packet, int wrappings, UdpFrame& out) {
   if (packet.size() < kIpv6Header || u8(packet, 0) >> 4 != 6) return FrameVerdict::kMalformed;
   const std::size_t total = kIpv6Header + u16(packet, 4);
   packet = packet.first(std::min(packet.size(), total));
@@ -135,7 +188,20 @@ FrameVerdict parse_ipv6(Bytes packet, UdpFrame& out) {
   std::copy_n(packet.begin() + 8, 16, reinterpret_cast<std::byte*>(out.from.address.data()));
   std::copy_n(packet.begin() + 24, 16, reinterpret_cast<std::byte*>(out.to.address.data()));
   out.from.v6 = out.to.v6 = true;
-  return parse_udp(packet.subspan(at), total - at, out);
+  return parse_payload(next, packet.subspan(at), total - at, wrappings, out);
+}
+
+/// Finds the datagram behind VLAN tags and PPPoE.
+FrameVerdict parse_carried(std::optional<Carried> carried, int wrappings, UdpFrame& out) {
+  for (int tags = 0; tags < kMaxVlanTags && carried && is_vlan(carried->type); ++tags) {
+    carried = behind_header(carried->bytes, 2, 4);
+  }
+  if (carried && carried->type == kEtherPppSession) carried = behind_pppoe(carried->bytes);
+  if (!carried) return FrameVerdict::kMalformed;
+  if (wrappings > kMaxTunnels) return FrameVerdict::kOtherTraffic;
+  if (carried->type == kEtherIpv4) return parse_ipv4(carried->bytes, wrappings, out);
+  if (carried->type == kEtherIpv6) return parse_ipv6(carried->bytes, wrappings, out);
+  return FrameVerdict::kOtherTraffic;
 }
 
 /// Adds 16-bit words in network order to a one's-complement sum (RFC 1071). A frame's worth cannot overflow
@@ -199,15 +265,8 @@ bool supported(LinkType link) noexcept {
 }
 
 FrameVerdict parse_frame(LinkType link, std::span<const std::byte> frame, UdpFrame& out) noexcept {
-  std::optional<Carried> carried = behind_link(link, frame);
-  for (int tags = 0; tags < kMaxVlanTags && carried && is_vlan(carried->type); ++tags) {
-    carried = behind_header(carried->bytes, 2, 4);
-  }
-  if (!carried) return FrameVerdict::kMalformed;
   UdpFrame found;
-  FrameVerdict verdict = FrameVerdict::kOtherTraffic;
-  if (carried->type == kEtherIpv4) verdict = parse_ipv4(carried->bytes, found);
-  if (carried->type == kEtherIpv6) verdict = parse_ipv6(carried->bytes, found);
+  const FrameVerdict verdict = parse_carried(behind_link(link, frame), 0, found);
   if (verdict == FrameVerdict::kDatagram) out = found;
   return verdict;
 }

@@ -24,6 +24,7 @@ enum class LinkType : int {
   kCooked2 = 276,
 };
 constexpr int kMaxVlanTags = 4;  // two with IEEE 802.1ad, and as many again
+constexpr int kMaxTunnels = 3;   // one within the other
 constexpr std::string_view kLinkTypesRead =
     "Ethernet, Linux cooked (SLL, SLL2), raw IP, BSD loopback (NULL, LOOP)";
 
@@ -46,8 +47,9 @@ struct UdpFrame {
 };
 
 /// Finds the datagram in a frame. `out` is written only when the verdict is `kDatagram`. Checksums are not
-/// looked at: on the machine that sends they are often filled in behind the capture. IPv6 extension headers
-/// other than hop-by-hop, routing, fragment and destination options are other traffic.
+/// looked at: on the machine that sends they are often filled in behind the capture. Of tunnels, VXLAN, GRE,
+/// IP in IP and PPPoE, it is the innermost. IPv6 extension headers other than hop-by-hop, routing, fragment
+/// and destination options are other traffic.
 FrameVerdict parse_frame(LinkType link, std::span<const std::byte> frame, UdpFrame& out) noexcept;
 
 constexpr std::size_t kMaxFrameHeaders = 48;  ///< bytes `build_frame` puts in front of a payload, at most

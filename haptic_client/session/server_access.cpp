@@ -52,6 +52,25 @@ void fail_mismatched(const NetLink& link, const ClientConfig& config) {
 
 }  // namespace
 
+std::string remedy_of(const std::error_code& error) {
+  if (error == std::errc::connection_refused)
+    return "start `sim_server run` there, or give the port that it listens at";
+  if (error == std::errc::operation_not_permitted)
+    return "a firewall of this machine rejects it (`nft list ruleset` shows it): let UDP to that port out";
+  if (error == std::errc::permission_denied)
+    return "a firewall on the way rejects it, or it is a broadcast address: let UDP to that port through, or "
+           "give "
+           "the address of one machine";
+  if (error == std::errc::host_unreachable)
+    return "the machine is off, or a firewall on it or on the way rejects UDP: `ping` it; if it answers, let "
+           "UDP to "
+           "that port through";
+  if (error == std::errc::network_unreachable)
+    return "this machine has no way there: is the address right, and this machine in the same network or "
+           "VPN?";
+  return "is the address right, and this machine in the same network?";
+}
+
 void fail_unanswered(const NetLink& link, const ClientConfig& config, const std::string& name, Time waited) {
   if (link.refused == static_cast<int>(protocol::RefuseReason::kNoFreeTool)) {
     fail_at_run_time(
@@ -67,17 +86,15 @@ void fail_unanswered(const NetLink& link, const ClientConfig& config, const std:
         config.server, version, protocol::kProtocolVersion);
   }
   if (const int reason = link.unsendable; reason != 0) {
-    fail_at_run_time(
-        "nothing can be sent to {}: {}; is the address right, and this machine in the same network?",
-        config.server, std::generic_category().message(reason));
+    const std::error_code error(reason, std::generic_category());
+    fail_at_run_time("nothing can be sent to {}: {}; {}", config.server, error.message(), remedy_of(error));
   }
   fail_mismatched(link, config);
   const UdpSocket::Answer answer = answer_to_no_version(server_of(config));
   if (answer.error) {
     const bool refused = answer.error == std::errc::connection_refused;
-    fail_at_run_time("{}nothing listens at {} ({}): {}", name, config.server, answer.error.message(),
-                     refused ? "start `sim_server run` there, or give the port that it listens at"
-                             : "a router or firewall on the way rejects it; open UDP there");
+    fail_at_run_time("{}{} {} ({}): {}", name, refused ? "nothing listens at" : "nothing reaches",
+                     config.server, answer.error.message(), remedy_of(answer.error));
   }
   if (is_server(answer)) {
     fail_at_run_time(

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
 
 #include "common/error.h"
 #include "common/progress.h"
 #include "common/text.h"
 #include "protocol/recorder.h"
+#include "sim_server/explicit/mass_scaling.h"
 #include "sim_server/models/deformation_models.h"
 #include "sim_server/scene/touchable.h"
 #include "sim_server/scene_file/read_scene.h"
@@ -27,6 +29,13 @@ constexpr double kBytesOfMotion = 9 * 24 + 8;  // of a vertex in explicit steps:
 struct Cost {
   double bytes = 0, setup_ms = 0, step_ms = 0;
 };
+
+/// Bytes that this process held resident at most so far, pages of its program too.
+double peak_memory() {
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  return 1024.0 * static_cast<double>(used.ru_maxrss);
+}
 
 double ms(Time t) {
   return 1e3 * to_seconds(t);
@@ -141,6 +150,8 @@ std::vector<BuiltPart> built_parts(const Scene& scene, const Simulation& simulat
     row.bytes = part.bytes;
     if (!part.detail.empty()) row.detail = part.detail;
   }
+  if (const double added = simulation.traits().added_mass; added > 0)
+    rows.push_back({"added mass", added_mass_text(added), scene.deformation.where});
   const std::string wall =
       fmt::format("nothing kept; under a tool each vertex is a wall of {:g} N/m", held_stiffness(scene));
   for (const FixedRegion& region : scene.fixed) rows.push_back({"fixed", wall, region.where});
@@ -336,7 +347,8 @@ Explanation explain(const Scene& scene, const Progress& progress, int steps, con
                           .omitted = {},
                           .steps = time_steps(scene, own.simulation, own.sites, steps, progress),
                           .state_hash = own.simulation.state_hash(),
-                          .tetrahedra = own.simulation.mesh().tetrahedra.size()};
+                          .tetrahedra = own.simulation.mesh().tetrahedra.size(),
+                          .peak_bytes = peak_memory()};
   own.cost = cost_of(own.simulation, times, explanation.steps);
   own.compliance_ms = ms(times.of(name_of(Stage::kCompliance)));
   explanation.omitted = omitted(own);

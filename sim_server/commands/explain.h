@@ -47,6 +47,7 @@ struct Explanation {
   StepTimes steps;
   std::uint64_t state_hash = 0;  ///< after the steps in contact
   std::size_t tetrahedra = 0;
+  double peak_bytes = 0;  ///< resident of this process at most, with its program, until then: measured
 };
 
 /// Builds the scene and, where that takes no more than 10 s, a variant for each thing it leaves out, and

@@ -89,6 +89,8 @@ std::string built_text(const Explanation& explanation) {
       {"all", fmt::format("{:.0f} bytes a tetrahedron", bytes / static_cast<double>(explanation.tetrahedra)),
        "", bytes_text(static_cast<double>(total_bytes(explanation))),
        setup_text(total_setup_ms(explanation))});
+  rows.push_back({"resident", "at most, with the program and what set-up freed again: measured", "",
+                  bytes_text(explanation.peak_bytes), ""});
   return table(rows, 3, 4);
 }
 
@@ -200,6 +202,7 @@ Json to_json(const Explanation& explanation) {
           {"rate_where", scene.rate_where},
           {"possible_rate_hz", possible_rate_hz(explanation.steps)},
           {"bytes", total_bytes(explanation)},
+          {"peak_bytes", std::llround(explanation.peak_bytes)},
           {"setup_ms", total_setup_ms(explanation)},
           {"built", built},
           {"omitted", omitted},

@@ -13,6 +13,7 @@
 #include "common/report.h"
 #include "sim_server/commands/explain.h"
 #include "sim_server/commands/resection_log.h"
+#include "sim_server/explicit/mass_scaling.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/virtual_session.h"
 #include "sim_server/study/studied_errors.h"
@@ -147,6 +148,7 @@ Json make_report(const RecordOptions& options, const VirtualSession& session, do
                  {"late", stats.late},
                  {"flagged", stats.flagged},
                  {"flagged_by", simulation.flagged().to_json()},
+                 {"added_mass_percent", 100 * simulation.traits().added_mass},
                  {"strain", simulation.strain() != nullptr ? simulation.strain()->to_json() : Json()},
                  {"max_newton", stats.max_newton},
                  {"missed_by_m", nullptr},
@@ -177,6 +179,8 @@ void print_recording(const RecordOptions& options, const VirtualSessionStats& st
   }
   if (const auto snaps = stats.snaps.snaps()) fmt::print("            {}\n", snaps_text(*snaps));
   if (const auto jumps = stats.jumps.jumps()) fmt::print("            {}\n", unexplained_text(*jumps));
+  if (const double added = simulation.traits().added_mass; added > 0)
+    fmt::print("            {}\n", added_mass_text(added));
   if (simulation.strain() != nullptr && !simulation.strain()->to_text().empty())
     fmt::print("            {}\n", simulation.strain()->to_text());
   if (options.real_time)

@@ -60,12 +60,22 @@ std::string heat_text(const ResectionTotals& all, bool planned) {
                      away(planned && all.mean_distance() > 0, all.mean_distance(), "on average"), at_end);
 }
 
+std::string outrun_text(const ResectionTotals& all) {
+  if (all.outrun_steps == 0) return {};
+  return fmt::format(
+      "; in {} steps it was felt too late, as it had gone farther in a step than its edge is long: these are "
+      "flagged (cut more slowly, or with a higher `rate_hz`)",
+      all.outrun_steps);
+}
+
 std::string separated_text(const ResectionTotals& all, bool planned) {
   if (all.slides == 0 && all.splits == 0) return {};
-  return fmt::format("; a blade parted {:.1f} cm2{}: {} vertices became two, {} slid onto its way{}",
-                     1e4 * all.separated_area, away(planned, all.mean_separated_distance(), "on average"),
-                     all.splits, all.slides,
-                     all.ran_out ? "; it went through more, for which there were no vertices left" : "");
+  return fmt::format(
+      "; a blade parted {:.1f} cm2{}: {} vertices became two, {} slid onto its way{}",
+      1e4 * all.separated_area, away(planned, all.mean_separated_distance(), "on average"), all.splits,
+      all.slides,
+      outrun_text(all) +
+          (all.ran_out ? "; it went through more, for which there were no vertices left" : ""));
 }
 
 }  // namespace
@@ -167,6 +177,7 @@ Json resection_report(const Simulation& simulation) {
           {"vertices_slid", all.slides},
           {"vertices_split", all.splits},
           {"ran_out_of_vertices", all.ran_out},
+          {"outrun_steps", all.outrun_steps},
           {"hot_s", all.hot_time},
           {"contact_s", all.contact_time},
           {"at_end_s", all.time_at_end}};

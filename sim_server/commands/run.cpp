@@ -25,6 +25,7 @@
 #include "sim_server/commands/pictures.h"
 #include "sim_server/commands/resection_log.h"
 #include "sim_server/commands/run_news.h"
+#include "sim_server/explicit/mass_scaling.h"
 #include "sim_server/models/deformation_models.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/net_link.h"
@@ -123,6 +124,7 @@ void add_run(Json& report, const SimLoop& loop, const NetLink& link, const Simul
   report["late"] = stats.late;
   report["flagged"] = stats.flagged;
   report["flagged_by"] = simulation.flagged().to_json();
+  report["added_mass_percent"] = 100 * simulation.traits().added_mass;
   report["strain"] = simulation.strain() != nullptr ? simulation.strain()->to_json() : Json();
   report["max_newton"] = stats.max_newton();
   report["tools"] = tools_report(stats, link, scene, errors);
@@ -175,6 +177,8 @@ void print_summary(const Json& report, const Simulation& simulation) {
       report["max_newton"].get<double>());
   if (const std::string why = simulation.flagged().to_text(); !why.empty())
     fmt::print("            steps with a flagged force: {}\n", why);
+  if (const double added = simulation.traits().added_mass; added > 0)
+    fmt::print("            {}\n", added_mass_text(added));
   if (const std::string strain = strain_text(simulation); !strain.empty())
     fmt::print("            {}\n", strain);
   for (std::size_t i = 0; i < report["tools"].size(); ++i) {

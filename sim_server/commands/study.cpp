@@ -15,6 +15,7 @@
 #include "common/progress.h"
 #include "common/report.h"
 #include "sim_server/commands/explain.h"
+#include "sim_server/models/implicit.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/study/studied_errors.h"
 #include "sim_server/study/study_errors.h"
@@ -148,9 +149,14 @@ const StudyCase* with_shortest_steps(const StudyCase& own, std::span<const Study
   return shortest;
 }
 
+/// Order of the error of a scene's steps in their length.
+int order_of(const Scene& scene) {
+  const auto* const implicit = scene.deformation.find<ImplicitSettings>();
+  return implicit != nullptr && implicit->second_order ? 2 : 1;
+}
+
 /// Keeps what the study says of the scene as it is, for the reports of sessions; a quick one where there is
-/// none yet. The error of the scene with the shortest steps is that of its mesh, and what its own steps give
-/// beside them that of the time step.
+/// none yet.
 void keep_for_sessions(const CacheOptions& where, const StudyOptions& options, Runner& runner,
                        const Scene& scene, const StudyResult& result, const Trace& reference,
                        double seconds) {
@@ -165,18 +171,17 @@ void keep_for_sessions(const CacheOptions& where, const StudyOptions& options, R
         "shorter ones");
     return;
   }
-  const StudyErrors mesh = errors_of(by_shortest, reference, runner.motion(), 0),
-                    step = errors_of(by_own, by_shortest, runner.motion(), 0);
-  if (result.own.force > 0.5 * mesh.force) {
+  const SplitError split = split_error(by_own, by_shortest, order_of(scene), reference, runner.motion());
+  if (result.own.force > 0.5 * split.mesh) {
     log::info(
         "not kept for the reports of sessions: the reference itself may be {:.2g} % off, the mesh {:.2g} %",
-        result.own.force, mesh.force);
+        result.own.force, split.mesh);
     return;
   }
   const auto measured = [](double percent) {
     return DiscretisationError{ErrorSource::kMeasured, static_cast<float>(percent)};
   };
-  keep_studied(*cache, scene, {measured(mesh.force), measured(step.force)}, seconds);
+  keep_studied(*cache, scene, {measured(split.mesh), measured(split.time_step)}, seconds);
 }
 
 }  // namespace

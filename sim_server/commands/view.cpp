@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 #include <limits>
 #include <memory>
-#include <set>
 #include <thread>
 
 #include "common/clock.h"
@@ -19,6 +18,7 @@
 #include "sim_server/commands/pictures.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/captured_forces.h"
+#include "sim_server/serving/captured_rerun.h"
 #include "sim_server/serving/captured_steps.h"
 #include "sim_server/simulation/setup_times.h"
 #include "sim_server/viewer/recorded_session.h"
@@ -27,7 +27,6 @@
 namespace palpate::sim {
 namespace {
 
-constexpr double kLongestStep = 1;  // s between two answers; what was longer was a pause, or another session
 constexpr double kSimilar = 0.1;  // of the largest force: how far off a scene is that is not the captured one
 
 /// Shows what a session has to show without a scene.
@@ -43,91 +42,28 @@ void show_captured(const CapturedAnswer& answer, Picture& picture) {
   picture.step_ms = 1e-6 * static_cast<double>(sample.step_ns);
 }
 
-/// Exact where they are near; any two, as they come off the wire.
-double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
-  const double about = 1e-9 * (static_cast<double>(to_ns) - static_cast<double>(from_ns));
-  return std::abs(about) < 2 * kLongestStep ? 1e-9 * static_cast<double>(to_ns - from_ns) : about;
-}
-
 std::size_t tools_in(const std::filesystem::path& capture) {
   std::size_t tools = 1;
   read_captured_steps(
-      capture, [](const protocol::ToolState&) {},
+      capture, [](std::uint64_t, const protocol::ToolState&) {},
       [&](const CapturedAnswer& answer) { tools = std::max<std::size_t>(tools, answer.sample.tool + 1U); });
   return tools;
 }
 
-/// A scene that is stepped again with the tool states that its server answered.
-class Rerun {
- public:
-  explicit Rerun(Simulation& simulation)
-      : simulation_(simulation),
-        served_(simulation),
-        inputs_(simulation.tools()),
-        answered_(simulation.tools()),
-        captured_(simulation.tools()) {}
+/// Steps the answers taken, and shows where that led at `t`.
+void step_again(CapturedRerun& rerun, const Simulation& simulation, Time t, Picture& picture) {
+  const auto outcomes = rerun.step();
+  picture.step = rerun.steps();
+  picture.simulated = rerun.simulated();
+  for (std::size_t i = 0; i < outcomes.size(); ++i)
+    show_tool(rerun.inputs()[i], &outcomes[i], to_seconds(t), picture.tools[i]);
+  show_organ(simulation, picture);
+}
 
-  void take(const protocol::ToolState& state) {
-    if (state.tool < inputs_.size()) inputs_[state.tool].follow(state);
-  }
-  /// The tool of this session is in no hand from the step on that the next answer begins.
-  void release(std::uint64_t session) { departed_.insert(session); }
-  /// Takes an answer for the step to come.
-  void take(const CapturedAnswer& answer) {
-    if (answer.sample.tool >= inputs_.size())
-      fail("the capture has tool {}, and the scene only {}", answer.sample.tool + 1, inputs_.size());
-    SessionInput& input = inputs_[answer.sample.tool];
-    const double dt = seconds_between(input.state.t_ns, answer.state.t_ns);
-    if (answer.begins_step) {
-      dt_ = input.session == answer.session && dt > 0 && dt < kLongestStep ? dt : 0;
-      drop_departed(answer.t);
-    }
-    input.session = answer.session;
-    answered_[answer.sample.tool] = answer.t;
-    input.state = answer.state;
-    // What a client asks for besides its force changes nothing here.
-    input.state.flags &= protocol::ToolState::kDeviceLost;
-    input.fresh = true;
-    captured_[answer.sample.tool] = answer.sample.f_W;
-  }
-  void step(Time t, Picture& picture) {
-    const auto outcomes = served_.step(inputs_, dt_);
-    ++picture.step;
-    picture.simulated += dt_;
-    for (std::size_t i = 0; i < outcomes.size(); ++i) {
-      show_tool(inputs_[i], &outcomes[i], to_seconds(t), picture.tools[i]);
-      if (!inputs_[i].fresh) continue;
-      off_ = std::max(off_, (outcomes[i].force.force - captured_[i]).norm());
-      largest_ = std::max(largest_, captured_[i].norm());
-      inputs_[i].fresh = false;
-    }
-    show_organ(simulation_, picture);
-  }
-  /// Returns how far the forces are from those captured; `largest`: the largest of these, N.
-  double off() const { return off_; }
-  double largest() const { return largest_; }
-
- private:
-  /// And clients that a server drops, as it has not heard of them for so long.
-  void drop_departed(Time t) {
-    for (std::size_t i = 0; i < inputs_.size(); ++i) {
-      const bool silent = t - answered_[i] > protocol::ServerSessions::kTimeout;
-      if (silent || departed_.contains(inputs_[i].session)) inputs_[i].session = 0;
-    }
-  }
-
-  const Simulation& simulation_;
-  ServedTools served_;
-  std::vector<SessionInput> inputs_;
-  std::vector<Time> answered_;  // by tool: when last, in the capture
-  std::vector<Vec3> captured_;
-  std::set<std::uint64_t> departed_;  // sessions: an answer that was under way is of its own step alone
-  double dt_ = 0, off_ = 0, largest_ = 0;
-};
-
-/// All of the capture, of about so many answers, into `session`; `rerun` may be null.
-void make_session(const std::filesystem::path& capture, std::size_t answers, Rerun* rerun,
-                  RecordedSession& session) {
+/// All of the capture, of about so many answers, into `session`. `simulation`, which may be null, with its
+/// `rerun`: is stepped again.
+void make_session(const std::filesystem::path& capture, std::size_t answers, const Simulation* simulation,
+                  CapturedRerun* rerun, RecordedSession& session) {
   constexpr std::size_t kBetweenReports = 100;  // answers: 3 s of a session at 30 Hz
   Time t{}, newest{};
   ProgressLine progress("nothing is shown");
@@ -137,14 +73,14 @@ void make_session(const std::filesystem::path& capture, std::size_t answers, Rer
   bool pending = false, all = true;
   const auto finish = [&] {
     if (!pending) return;
-    if (rerun != nullptr) rerun->step(t, session.picture());
+    if (rerun != nullptr) step_again(*rerun, *simulation, t, session.picture());
     all = session.add(t) && all;
     pending = false;
   };
   read_captured_steps(
       capture,
-      [&](const protocol::ToolState& state) {
-        if (rerun != nullptr) rerun->take(state);
+      [&](std::uint64_t sender, const protocol::ToolState& state) {
+        if (rerun != nullptr) rerun->take(sender, state);
       },
       [&](const CapturedAnswer& answer) {
         if (taken++ % kBetweenReports == 0)
@@ -170,17 +106,20 @@ void make_session(const std::filesystem::path& capture, std::size_t answers, Rer
                  1e-6 * static_cast<double>(session.bytes().size()));
 }
 
-void report_how_far_off(const Rerun& rerun, const std::filesystem::path& file, const Scene& scene) {
+void report_how_far_off(const CapturedRerun& rerun, const std::filesystem::path& file, const Scene& scene) {
   log::info("{}: stepped again, its forces are within {:.3g} N of those captured, the largest {:.3g} N",
             file.string(), rerun.off(), rerun.largest());
   if (rerun.off() <= kSimilar * rerun.largest()) return;
-  if (scene.cutting) {
+  if (rerun.tools_taken() < scene.tools.size()) {
+    log::warning(
+        "{}: that is far off; the capture holds {} of the {} tools of this scene, and what the others did is "
+        "not in it. `sim_server run --record` captures them all",
+        file.string(), rerun.tools_taken(), scene.tools.size());
+  } else if (scene.cutting) {
     log::warning(
         "{}: that is far off: what is shown is not cut as what was felt. Where tissue yields depends on "
         "every "
-        "step of the server, and a capture holds those that were answered; without --scene the captured "
-        "forces "
-        "are shown alone",
+        "datagram that the server got; capture on its machine, with `sim_server run --record`",
         file.string());
   } else {
     log::warning("{}: that is far off; is it the scene of this capture?", file.string());
@@ -215,8 +154,9 @@ int view_capture(const ViewOptions& options) {
   facts.rate_hz = forces.rate_hz();
   facts.recorded = true;
   RecordedSession session(facts);
-  auto rerun = simulation ? std::make_unique<Rerun>(*simulation) : nullptr;
-  make_session(options.capture, forces.samples.size(), rerun.get(), session);
+  auto rerun = simulation ? std::make_unique<CapturedRerun>(*simulation, scene->rate_hz) : nullptr;
+  make_session(options.capture, forces.samples.size(), simulation ? &*simulation : nullptr, rerun.get(),
+               session);
   if (rerun) report_how_far_off(*rerun, *options.scene, *scene);
   ViewerFeed feed(facts.organ.rest);
   Viewer viewer(*address, "", facts, feed, &session.bytes());

@@ -22,8 +22,9 @@ struct ResectionTotals {
   double separated_area = 0;                  ///< by blades, m^2: one side
   double separated_distance_sum = 0;          ///< of that from the plan, m x m^2
   std::uint64_t slides = 0, splits = 0;       ///< of vertices, by blades
-  bool ran_out = false;                       ///< of vertices: a blade has parted less than it went through
-  double hot_time = 0, contact_time = 0;      ///< s with a tip hot; and that touched
+  std::uint64_t outrun_steps = 0;  ///< flagged: a blade had gone farther in a step than its edge is long
+  bool ran_out = false;            ///< of vertices: a blade has parted less than it went through
+  double hot_time = 0, contact_time = 0;  ///< s with a tip hot; and that touched
   double time_at_end = 0;  ///< s, of each tool: cuts, at tissue that cannot be removed or parted
 
   /// Returns the mean distance of parted faces from the plan, m; 0 where nothing is parted.

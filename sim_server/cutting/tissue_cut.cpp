@@ -13,6 +13,10 @@ constexpr double kRounding = 1e-9;   // s
 constexpr double kAtRest = 6e-4;     // m/s: below this speed a blade is resisted less
 constexpr double kWorkedOff = 1e-7;  // J: a debt that a released blade drops
 
+bool goes_beyond_its_edge(const BladeEdge& was, const BladeEdge& is) {
+  return std::max((is[0] - was[0]).norm(), (is[1] - was[1]).norm()) > (is[1] - is[0]).norm();
+}
+
 }  // namespace
 
 TissueCut::TissueCut(const Scene& scene, TetMesh& mesh, std::span<const int> held, Surface& surface)
@@ -134,6 +138,7 @@ bool TissueCut::part_by(std::size_t tool, double dt, CutOrgan& organ) {
       resection_.part({*blade.was, blade.is, blade.trail}, blade.were, are, organ.surface);
   if (!separated.stroke.moved) return false;
   if (separated.stroke.at_end) resection_.totals().time_at_end += dt;
+  blade.outran = blade.outran || (separated.area > 0 && goes_beyond_its_edge(*blade.was, blade.is));
   blade.was = blade.is;
   blade.trail = separated.stroke.trail;
   blade.were = std::move(are);
@@ -181,6 +186,12 @@ void TissueCut::resist(std::size_t tool, const ToolContact& contact, double dt, 
   blade.force.setZero();
   if (far > 0) blade.force = -blade.debt / (resection_.blade_size() + far) / (far + kAtRest * dt) * motion;
   blade.debt += blade.force.dot(motion);
+  if (blade.outran) {  // the hand is elsewhere by now: the work is owed to no path of it
+    answer.flagged = true;
+    ++resection_.totals().outrun_steps;
+    blade.debt = 0;
+    blade.outran = false;
+  }
   answer.force += blade.force;
   answer.mean_force += blade.force;
   if (!contact.shape().trocar) answer.torque += 0.5 * (blade.is[1] - blade.is[0]).cross(blade.force);

@@ -86,6 +86,7 @@ class TissueCut {
     std::vector<Vec3> were = {};        // surface vertices then, m
     std::optional<Vec3> place = {};     // of the tool at the end of the step before, m
     double debt = 0;                    // J of what it has parted
+    bool outran = false;                // by more than its edge in a step: that is felt too late
     Vec3 force = Vec3::Zero();          // on it, N
   };
   bool is_hot(std::size_t tool, const ToolContact& contact, const ToolInput& input) const;

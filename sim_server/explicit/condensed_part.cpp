@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "sim_server/elasticity/tensors.h"
 #include "sim_server/sparse/symmetric_product.h"
 
 namespace palpate::sim {
@@ -17,12 +19,22 @@ Vec3 moved_by(const Eigen::MatrixXd& modes, Eigen::Index first, const Eigen::Vec
 
 }  // namespace
 
-void CondensedPart::place_at(const std::vector<double>& u) noexcept {
-  for (Part& part : all_) {
-    for (std::size_t b = 0; b < part.border.size(); ++b)
-      part.at.segment<3>(3 * static_cast<Eigen::Index>(b)) =
-          Eigen::Map<const Vec3>(u.data() + part.border[b]);
+void CondensedPart::place_at(Part& part, const std::vector<double>& u) noexcept {
+  const auto& [R, shift] = part.frame;
+  for (std::size_t b = 0; b < part.border.size(); ++b) {
+    const auto row = 3 * static_cast<Eigen::Index>(b);
+    const Eigen::Map<const Vec3> there(u.data() + part.border[b]);
+    if (!part.floats) {
+      part.at.segment<3>(row) = there;
+      continue;
+    }
+    const Vec3 rest = part.border_rest.segment<3>(row);
+    part.at.segment<3>(row) = R.transpose() * (rest + there - shift) - rest;
   }
+}
+
+void CondensedPart::place_at(const std::vector<double>& u) noexcept {
+  for (Part& part : all_) place_at(part, u);
 }
 
 void CondensedPart::observe(const std::vector<double>& u, const std::vector<double>& v) noexcept {
@@ -32,7 +44,8 @@ void CondensedPart::observe(const std::vector<double>& u, const std::vector<doub
     for (std::size_t b = 0; b < part.border.size(); ++b) {
       const auto row = 3 * static_cast<Eigen::Index>(b);
       part.bent.segment<3>(row) =
-          part.at.segment<3>(row) + damping_.stiffness * Eigen::Map<const Vec3>(v.data() + part.border[b]);
+          part.at.segment<3>(row) +
+          damping_.stiffness * part.frame.R.transpose() * Eigen::Map<const Vec3>(v.data() + part.border[b]);
     }
     part.p_bent = part.p + damping_.stiffness * part.p_v;
     symmetric_product(part.following, part.bent, part.force);
@@ -68,13 +81,20 @@ void CondensedPart::advance(double h, std::span<const VertexLoad> loads) noexcep
 Vec3 CondensedPart::carried(int vertex) const noexcept {
   const auto v = static_cast<std::size_t>(vertex);
   const Part& part = all_[static_cast<std::size_t>(part_[v])];
-  return part.carrying.middleCols<3>(row_[v]).transpose() * part.at + moved_by(part.shapes, row_[v], part.p);
+  const Vec3 u =
+      part.carrying.middleCols<3>(row_[v]).transpose() * part.at + moved_by(part.shapes, row_[v], part.p);
+  if (!part.floats) return u;
+  const Vec3 rest = part.surface_rest.segment<3>(row_[v]) - part.centre;
+  return part.frame.R * (rest + u) + part.frame.shift - rest;
 }
 
 Mat3 CondensedPart::compliance(int vertex, int other) const noexcept {
   const auto v = static_cast<std::size_t>(vertex), w = static_cast<std::size_t>(other);
   if (part_[v] != part_[w]) return Mat3::Zero();
-  return all_[static_cast<std::size_t>(part_[v])].compliance.block<3, 3>(row_[v], row_[w]);
+  const Part& part = all_[static_cast<std::size_t>(part_[v])];
+  const auto block = part.compliance.block<3, 3>(row_[v], row_[w]);
+  if (!part.floats) return block;
+  return part.frame.R * block * part.frame.R.transpose();
 }
 
 void CondensedPart::watch(std::span<const int> vertices) noexcept {
@@ -107,9 +127,60 @@ void CondensedPart::hand_down(const VertexLoad& load, std::span<double> force) c
   const auto v = static_cast<std::size_t>(load.vertex);
   const Part& part = all_[static_cast<std::size_t>(part_[v])];
   const auto columns = part.carrying.middleCols<3>(row_[v]);
+  const Vec3 turned = part.frame.R.transpose() * load.force;
   for (std::size_t b = 0; b < part.border.size(); ++b)
     Eigen::Map<Vec3>(force.data() + part.border[b]) +=
-        columns.middleRows<3>(3 * static_cast<Eigen::Index>(b)) * load.force;
+        part.frame.R * (columns.middleRows<3>(3 * static_cast<Eigen::Index>(b)) * turned);
+}
+
+/// Makes the answer of a part static: its modes, if any, follow at once.
+void CondensedPart::take_modes_in(Part& part) {
+  const Eigen::MatrixXd compliant = part.squares.inverse().matrix().asDiagonal() * part.driven,
+                        shaped = part.squares.inverse().matrix().asDiagonal() * part.shapes;
+  part.following.noalias() += part.driven.transpose() * compliant;
+  part.carrying.noalias() += part.driven.transpose() * shaped;
+  part.compliance.noalias() += part.shapes.transpose() * shaped;
+  part.squares.resize(0);
+  for (Eigen::MatrixXd* const modes : {&part.driven, &part.shapes}) modes->resize(0, modes->cols());
+  for (Eigen::VectorXd* const amplitudes : {&part.p, &part.p_v, &part.p_bent}) amplitudes->resize(0);
+}
+
+void CondensedPart::end_modes(int part, ElasticTensors& tensors, std::vector<double>& v) {
+  Part& ends = all_[static_cast<std::size_t>(part)];
+  if (ends.squares.size() == 0) return;
+  Eigen::MatrixXd together(ends.driven.cols(), 3);  // the border goes as one piece
+  for (Eigen::Index b = 0; b < together.rows(); b += 3) together.middleRows<3>(b).setIdentity();
+  const Eigen::MatrixXd amplitudes = ends.squares.inverse().matrix().asDiagonal() * (ends.driven * together);
+  const double mass = amplitudes.squaredNorm() / 3;  // kg, the mean over three directions
+  const Vec3 velocity = amplitudes.transpose() * ends.p_v / mass;
+  const double beside = std::accumulate(ends.border_mass.begin(), ends.border_mass.end(), 0.0);
+  for (std::size_t b = 0; b < ends.border.size(); ++b) {
+    const double fraction = beside > 0 ? ends.border_mass[b] / beside
+                                       : 1.0 / static_cast<double>(ends.border.size()),
+                 kg = mass * fraction;
+    const int place = ends.border[b] / 3;
+    tensors.add_mass(place, kg);
+    Eigen::Map<Vec3> own(v.data() + ends.border[b]);
+    own += kg / tensors.masses()[static_cast<std::size_t>(place)] * (velocity - own);
+  }
+  take_modes_in(ends);
+}
+
+void CondensedPart::release(int part, const FloatingPieces& pieces, const Vec3& centre) {
+  Part& goes = all_[static_cast<std::size_t>(part)];
+  goes.floats = true;
+  goes.centre = centre;
+  goes.border_rest.resize(goes.at.size());
+  for (std::size_t b = 0; b < goes.border.size(); ++b)
+    goes.border_rest.segment<3>(3 * static_cast<Eigen::Index>(b)) = pieces.node(goes.border[b] / 3).rest;
+}
+
+void CondensedPart::turn(const FloatingPieces& pieces,
+                         std::span<const FloatingPieces::Frame> frames) noexcept {
+  for (Part& part : all_) {
+    if (part.floats && !part.removed)
+      part.frame = frames[static_cast<std::size_t>(pieces.piece_of(part.border.front() / 3))];
+  }
 }
 
 CuttableModel::Removed CondensedPart::remove(int part) noexcept {
@@ -156,9 +227,9 @@ std::size_t CondensedPart::border() const {
 std::size_t CondensedPart::bytes() const {
   std::size_t numbers = 0;
   for (const Part& part : all_)
-    numbers +=
-        static_cast<std::size_t>(part.following.size() + part.carrying.size() + part.compliance.size() +
-                                 part.driven.size() + part.shapes.size() + 3 * part.at.size());
+    numbers += static_cast<std::size_t>(
+        part.following.size() + part.carrying.size() + part.compliance.size() + part.driven.size() +
+        part.shapes.size() + 3 * part.at.size() + part.surface_rest.size() + part.border_rest.size());
   return numbers * sizeof(double) + (part_of_.size() + 3 * part_.size() + 2 * vertices_.size()) * sizeof(int);
 }
 

@@ -4,12 +4,15 @@
 #include <span>
 #include <vector>
 
+#include "sim_server/elasticity/floating_pieces.h"
 #include "sim_server/sparse/stiffness_matrix.h"
 #include "sim_server/tissue/deformation_model.h"
 #include "sim_server/tissue/model_inputs.h"
 #include "sim_server/tissue/rayleigh_damping.h"
 
 namespace palpate::sim {
+
+class ElasticTensors;
 
 struct LinearStatics;
 
@@ -28,8 +31,10 @@ struct LinearStatics;
 /// What of r no mode moves has its mass at the border: as much in all as it has where the border goes as one
 /// piece (Guyan's mass matrix, less that of the modes, lumped), shared as the tetrahedra there are.
 /// At rest that is the answer of the whole body. Rayleigh damping is that of the part in motion. Parts of r
-/// that meet only through the border have matrices of their own. One thread; only the constructor allocates
-/// and throws. Bytes: 72 b^2 + 72 b s + 72 s^2 + 24 k (b + s) of each part of k modes, in vertices.
+/// that meet only through the border have matrices of their own. A part that floats is all of this in the
+/// frame of its piece (`FloatingPieces`), without modes: all its mass is at the border. One thread; only the
+/// constructor allocates and throws. Bytes: 72 b^2 + 72 b s + 72 s^2 + 24 k (b + s) of each part of k modes,
+/// in vertices.
 class CondensedPart {
  public:
   /// The modes that swing.
@@ -45,7 +50,8 @@ class CondensedPart {
   void observe(const std::vector<double>& u, const std::vector<double>& v) noexcept;
   /// Takes the present displacement of the border, for `carried` alone. O(b).
   void place_at(const std::vector<double>& u) noexcept;
-  /// Adds what r does on the border as looked at, but for loads on r, to `force` (3 x places).
+  /// Adds what r does on the border as looked at, but for loads on r, to `force` (3 x places): of a part that
+  /// floats, in its frame.
   void follow(std::span<double> force) const noexcept;
   /// The modes go on by h (s) from what was looked at, under these loads.
   void advance(double h, std::span<const VertexLoad> loads) noexcept;
@@ -72,6 +78,15 @@ class CondensedPart {
 
   /// The part that a mesh vertex belongs to, or -1.
   int part_of(int mesh_vertex) const { return part_of_[static_cast<std::size_t>(mesh_vertex)]; }
+  /// Ends the modes of a part that nothing holds: it is in equilibrium at every instant. Their mass and
+  /// momentum go to the border, in `tensors` and `v` (m/s, 3 x places). Allocates.
+  void end_modes(int part, ElasticTensors& tensors, std::vector<double>& v);
+  /// Lets a part without modes float with the piece that its border is of. `centre`: of mass of that piece at
+  /// rest, m. Allocates.
+  void release(int part, const FloatingPieces& pieces, const Vec3& centre);
+  /// Takes the present frames of the pieces that float. O(parts).
+  void turn(const FloatingPieces& pieces, std::span<const FloatingPieces::Frame> frames) noexcept;
+
   /// A whole part was removed: it does nothing any more. Returns its elastic energy, less that of the border
   /// with r at rest, and the kinetic energy of its modes, J. Their momentum is not counted.
   CuttableModel::Removed remove(int part) noexcept;
@@ -103,8 +118,14 @@ class CondensedPart {
     Eigen::MatrixXd shapes;           // phi_s^T
     Eigen::VectorXd p, p_v, p_bent;   // amplitudes, their rates, p + stiffness p_v
     Eigen::VectorXd at, bent, force;  // u_b, u_b + stiffness v_b, B times that
-    bool removed = false;
+    Eigen::VectorXd surface_rest;     // m
+    bool removed = false, floats = false;
+    FloatingPieces::Frame frame{Mat3::Identity(), Vec3::Zero()};  // where it floats
+    Vec3 centre = Vec3::Zero();                                   // of its piece at rest, m
+    Eigen::VectorXd border_rest;                                  // from there, m
   };
+  static void place_at(Part& part, const std::vector<double>& u) noexcept;
+  static void take_modes_in(Part& part);
   void find_parts(const TetMesh& mesh, std::span<const int> held);
   void number_surface(const ModelInputs& inputs);
   static void condense(const ModelInputs& inputs, const LinearStatics& statics, const std::vector<int>& rows,

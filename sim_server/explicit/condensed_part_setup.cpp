@@ -227,8 +227,13 @@ CondensedPart::CondensedPart(const ModelInputs& inputs, const std::vector<int>& 
     part.squares = own.squares;
     part.driven = -rows_of(own.shapes, statics, rows).transpose() * coupling;
     std::vector<int> surface;
-    for (const int vertex : part.surface)
-      surface.push_back(inputs.surface.vertices[static_cast<std::size_t>(vertex)]);
+    part.surface_rest.resize(static_cast<Eigen::Index>(3 * part.surface.size()));
+    for (const int vertex : part.surface) {
+      const int v = inputs.surface.vertices[static_cast<std::size_t>(vertex)];
+      part.surface_rest.segment<3>(static_cast<Eigen::Index>(3 * surface.size())) =
+          inputs.mesh.vertices[static_cast<std::size_t>(v)];
+      surface.push_back(v);
+    }
     part.shapes = rows_of(own.shapes, statics, surface).transpose();
     part.border_mass = shared_mass(inputs.mesh, nodes[p],
                                    mass_beside_modes(statics, rows, coupling, part.driven, part.squares));

@@ -97,20 +97,48 @@ void CuttableBody::reshape(std::span<const int> slid, const Parting& parting, co
 
 void CuttableBody::release(std::span<const std::vector<int>> floating, const TetMesh& mesh) {
   std::vector<std::vector<FloatingPieces::Node>> pieces;
+  std::vector<std::pair<int, int>> condensed;  // parts that float, with a vertex in motion of their piece
+  const auto place_of = [this](int v) { return tensors.places()[static_cast<std::size_t>(v)]; };
   for (const std::vector<int>& tetrahedra : floating) {
-    std::set<int> vertices;
+    std::set<int> vertices, moving, parts;
     for (const int t : tetrahedra) {
       const Tetrahedron& corners = mesh.tetrahedra[static_cast<std::size_t>(t)];
       vertices.insert(corners.begin(), corners.end());
     }
-    const auto place_of = [this](int v) { return tensors.places()[static_cast<std::size_t>(v)]; };
-    if (std::ranges::any_of(vertices, [&](int v) { return place_of(v) < 0; })) continue;
+    std::ranges::copy_if(vertices, std::inserter(moving, moving.end()),
+                         [&](int v) { return place_of(v) >= 0; });
+    for (const int v : vertices) {
+      if (!moving.contains(v)) parts.insert(rest->part_of(v));
+    }
+    for (const int part : parts) {
+      rest->end_modes(part, tensors, motion.state.v);
+      condensed.emplace_back(part, *moving.begin());
+    }
     std::vector<FloatingPieces::Node>& piece = pieces.emplace_back();
-    for (const int v : vertices)
+    for (const int v : moving)
       piece.push_back({place_of(v), tensors.masses()[static_cast<std::size_t>(place_of(v))],
                        mesh.vertices[static_cast<std::size_t>(v)]});
   }
   motion.release({std::move(pieces), tensors.masses().size()});
+  for (const auto& [part, vertex] : condensed) {
+    const Vec3& from_centre = motion.floating().node(place_of(vertex)).rest;
+    rest->release(part, motion.floating(), mesh.vertices[static_cast<std::size_t>(vertex)] - from_centre);
+  }
+  if (rest) rest->turn(motion.floating(), motion.frames());
+}
+
+void CuttableBody::pull_border(bool changed, std::span<double> force) noexcept {
+  if (changed) motion.find_frames();
+  rest->turn(motion.floating(), motion.frames());
+  rest->observe(motion.state.u, motion.state.v);
+  std::ranges::fill(force, 0);
+  rest->follow(force);
+  motion.turn_forces(force);
+}
+
+void CuttableBody::place_rest() noexcept {
+  rest->turn(motion.floating(), motion.frames());
+  rest->place_at(motion.state.u);
 }
 
 }  // namespace palpate::sim

@@ -32,9 +32,15 @@ struct CuttableBody {
   void part(std::span<const CuttableModel::Slide> slides, const Parting& parting, const CutMesh& remaining,
             const Material& material, double frequency);
 
-  /// Lets these parts of what is in motion float (their tetrahedra, as `CuttableModel::release`). One of
-  /// which some is condensed does not, and swells as it turns.
+  /// Lets these parts of the body float (their tetrahedra, as `CuttableModel::release`), with the condensed
+  /// parts that they have.
   void release(std::span<const std::vector<int>> floating, const TetMesh& mesh);
+
+  /// Finds the forces of the condensed part on the border where both are by now, `force` (N, 3 x places).
+  /// `changed`: since the last sub-step, by anything but impulses. Of a body with a condensed part.
+  void pull_border(bool changed, std::span<double> force) noexcept;
+  /// Takes where the border is by now, for the surface of the condensed part. Of such a body.
+  void place_rest() noexcept;
 
   /// Since a body was made of a mesh, these vertices of that slid and faces were parted, in any order;
   /// `remaining` is now. The copies are where what they are of is.

@@ -91,6 +91,7 @@ ModelTraits CuttableMotion::traits() noexcept {
   return {.instants = instants_,
           .leading_force = true,
           .publishes_tangents = false,
+          .added_mass = scaling_.fraction,
           .columns = &*compliance_,
           .cuttable = this,
           .client = publisher_ ? this : nullptr,
@@ -159,7 +160,7 @@ FreeMotion CuttableMotion::free_motion(double dt) noexcept {
     state_.ended = false;
     if (body_->rest && publisher_ && publisher_->surface() != nullptr)
       publisher_->surface()->motion.continue_(sub_step_, state_.loads);
-    if (body_->rest) follow();
+    if (body_->rest) body_->pull_border(state_.changed, state_.force);
     take_sub_step();
     const bool ends = state_.instant + 1 == instants_;
     if (!ends) body_->motion.start_next();  // while contact is solved
@@ -171,13 +172,6 @@ FreeMotion CuttableMotion::free_motion(double dt) noexcept {
     apply_loads();
   }
   return {.positions = state_.free, .loaded = state_.positions, .moved = &state_.moved};
-}
-
-/// Updates the forces of the condensed part on the border, where both are by now.
-void CuttableMotion::follow() noexcept {
-  body_->rest->observe(body_->motion.state.u, body_->motion.state.v);
-  std::ranges::fill(state_.force, 0);
-  body_->rest->follow(state_.force);
 }
 
 /// Moves the condensed part with the border to the end of the sub-step, under constant loads on the border:
@@ -197,7 +191,7 @@ void CuttableMotion::carry_rest() noexcept {
   for (const VertexLoad& load : state_.loads) {
     if (moves(load)) at(load) += sub_step_ * impulse_of(load);
   }
-  body_->rest->place_at(body_->motion.state.u);
+  body_->place_rest();
   auto before = unloaded_.begin();
   for (const VertexLoad& load : state_.loads) {
     if (moves(load)) at(load) = *before++;

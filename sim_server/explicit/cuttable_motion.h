@@ -65,7 +65,6 @@ class CuttableMotion final : public DeformationModel,
   void end_contact() noexcept;
   void end_sub_step() noexcept;
   void take_sub_step() noexcept;
-  void follow() noexcept;
   void note_moved() noexcept;
   void observe(int vertex) noexcept;
   const std::vector<int>& looked_at() const noexcept {

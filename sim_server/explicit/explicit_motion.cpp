@@ -104,6 +104,11 @@ void ExplicitMotion::release(FloatingPieces pieces) {
   drop_next();
   floating_ = std::move(pieces);
   frames_.resize(floating_.count());
+  find_frames();
+}
+
+void ExplicitMotion::find_frames() noexcept {
+  drop_next();
   turn_bent();
 }
 

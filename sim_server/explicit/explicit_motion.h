@@ -1,4 +1,5 @@
 #pragma once
+#include <span>
 #include <vector>
 
 #include "common/prompt_team.h"
@@ -69,6 +70,16 @@ class ExplicitMotion {
   /// Lets these pieces float, by places; each other vertex is held with the rest. `run` is the next step. Of
   /// one motion. Allocates.
   void release(FloatingPieces pieces);
+  /// Pieces that float, and their frames, as the next sub-step takes them.
+  const FloatingPieces& floating() const { return floating_; }
+  std::span<const FloatingPieces::Frame> frames() const { return frames_; }
+  /// Finds the frames where the state was changed by anything but sub-steps and impulses.
+  void find_frames() noexcept;
+  /// Turns forces on the vertices of floating pieces (N, 3 x places), each in the frame of its piece and
+  /// linear in the displacements there, as K (u + stiffness v) is turned. Of one motion.
+  void turn_forces(std::span<double> forces) const noexcept {
+    floating_.turn_forces(frames_, {state.u.data()}, {forces.data()});
+  }
   /// Returns the displacement of a vertex, of a floating piece in its frame, m.
   Vec3 turned_displacement(int place) const;
 

@@ -32,6 +32,7 @@ struct MassScaling {
   double frequency = 0;
   std::vector<double> factors;  ///< (tetrahedra) of their masses, >= 1
   double added = 0;             ///< kg
+  double fraction = 0;          ///< that is, of the mass in motion
 };
 
 /// Returns the lowest frequency that at most `fraction` of the body's mass, added, allows. `moves`: of each
@@ -39,6 +40,9 @@ struct MassScaling {
 /// some 10 us an element.
 MassScaling scale_masses(const TetMesh& mesh, const Material& material, double fraction,
                          std::span<const char> moves = {});
+
+/// Says for reports what so much more mass (of the mass in motion) does to the force.
+std::string added_mass_text(double fraction);
 
 /// The factor (>= 1) of its mass with which a tetrahedron alone has at most this frequency, rad/s.
 double mass_factor_of(const TetMesh& mesh, std::size_t tetrahedron, const Material& material,

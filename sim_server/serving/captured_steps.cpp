@@ -34,12 +34,14 @@ ToolState state_of(const HeldSession& session, const ForceSample& sample) {
 }  // namespace
 
 std::size_t read_captured_steps(const std::filesystem::path& capture,
-                                const std::function<void(const ToolState&)>& on_state,
+                                const std::function<void(std::uint64_t, const ToolState&)>& on_state,
                                 const std::function<void(const CapturedAnswer&)>& on_answer,
                                 const std::function<void(std::uint64_t session)>& on_remaining) {
   CaptureReader reader(capture);
   std::map<std::uint64_t, HeldSession> sessions;
   std::array<bool, kMaxTools> answered{};  // in this step
+  std::int64_t step_ns = 0;                // how long it took
+  bool paused = false;                     // since then
   CapturedDatagram captured;
   Datagram datagram;
   std::optional<Time> first;
@@ -53,7 +55,7 @@ std::size_t read_captured_steps(const std::filesystem::path& capture,
       if (state.tick <= session.newest_tick) continue;
       session.newest_tick = state.tick;
       session.states[state.tick % kStatesStored] = state;
-      on_state(state);
+      on_state(number, state);
     }
     if (const auto* sample = std::get_if<ForceSample>(&datagram.message)) {
       HeldSession& session = sessions[number];
@@ -63,12 +65,16 @@ std::size_t read_captured_steps(const std::filesystem::path& capture,
       const bool again =
           (sample->flags & ForceSample::kPaused) != 0 && sample->tool_tick == session.newest_answered;
       session.newest_answered = sample->tool_tick;
+      paused = paused || again;
       if (again) continue;
       if (!first) first = captured.t;
-      const bool begins = answers == 0 || answered[sample->tool];
+      // The answers of one step say alike how long it took.
+      const bool begins = answers == 0 || answered[sample->tool] || sample->step_ns != step_ns;
       if (begins) answered = {};
       answered[sample->tool] = true;
-      on_answer({captured.t - *first, state_of(session, *sample), *sample, number, begins});
+      step_ns = sample->step_ns;
+      on_answer({captured.t - *first, state_of(session, *sample), *sample, number, begins, paused});
+      paused = false;
       ++answers;
     } else if (std::holds_alternative<Bye>(datagram.message) && on_remaining) {
       on_remaining(number);

@@ -76,6 +76,17 @@ std::optional<ForceJumps> unexplained_jumps(const Trace& trace) {
   return jumps.jumps();
 }
 
+SplitError split_error(const Trace& own, const Trace& shorter, int order, const Trace& reference,
+                       const Trajectory& motion) {
+  const double fraction = 1 / (std::pow(own.dt / shorter.dt, order) - 1);  // that shorter steps leave
+  Trace limit = own;
+  for (std::size_t k = 0; k < limit.forces.size(); ++k) {
+    const Vec3& force = shorter.forces[same_time(own, shorter, k)];
+    limit.forces[k] = force + fraction * (force - own.forces[k]);
+  }
+  return {errors_of(limit, reference, motion, 0).force, errors_of(own, limit, motion, 0).force};
+}
+
 StudyErrors errors_of(const Trace& trace, const Trace& reference, const Trajectory& motion, double latency) {
   RelativeError force;
   double off = 0, moved = 0;

@@ -23,6 +23,16 @@ struct StudyErrors {
 /// rest: a trace does not hold how the tissue moves by itself.
 std::optional<ForceJumps> unexplained_jumps(const Trace& trace);
 
+/// Error of the force of a scene as it is, % of the root mean square of the reference.
+struct SplitError {
+  double mesh = 0;       ///< that would be left with steps of no length
+  double time_step = 0;  ///< of the force from there
+};
+/// Splits the error of a trace by one with shorter steps, a whole number of them in each of `own`: what steps
+/// cost goes with their length to the power of `order` (Richardson 1911, Phil. Trans. A 210:307).
+SplitError split_error(const Trace& own, const Trace& shorter, int order, const Trace& reference,
+                       const Trajectory& motion);
+
 /// Every step of the trace must end where one of the reference does, but for rounding; `latency` in s.
 StudyErrors errors_of(const Trace& trace, const Trace& reference, const Trajectory& motion, double latency);
 

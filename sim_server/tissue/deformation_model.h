@@ -171,6 +171,7 @@ struct ModelTraits {
   bool publishes_tangents = true;
   bool turns =
       true;  ///< false: it moves as one piece that no torque turns, so jaws that hold it turn without it
+  double added_mass = 0;  ///< more mass for the stiffest elements in motion, of the mass in motion
   const ComplianceSource* columns = nullptr;  ///< `compliance` column by column; null: not precomputed
   NonlinearModel* nonlinear = nullptr;
   CuttableModel* cuttable = nullptr;

@@ -39,6 +39,10 @@ TEST_CASE("explain names the lines of the liver scene that ask for what it build
   }
   const Json json = read_json(file);
   CHECK(json["bytes"].get<long>() > 1000000);
+  // What the process itself held: more than its program, not the sum of parts that are reserved.
+  CHECK(said.find("resident") != std::string::npos);
+  CHECK(json["peak_bytes"].get<double>() > 10e6);
+  CHECK(json["peak_bytes"].get<double>() < 4e9);
   CHECK(said.find(json["state_hash"].get<std::string>()) != std::string::npos);
 }
 

@@ -1,5 +1,6 @@
 #include "protocol/link_frames.h"
 
+#include <fmt/core.h>
 #include <string>
 #include <vector>
 
@@ -111,6 +112,46 @@ TEST_CASE("a frame with five VLAN tags, or of no IP protocol, is other traffic",
   CHECK(verdict(LinkType::kNull, "07000000" + kV4) == kOther);
   CHECK(verdict(LinkType::kNull, "02000002" + kV4) == kOther);
   CHECK(verdict_ip("50000000" + kV4) == kOther);
+}
+
+TEST_CASE("a datagram within VXLAN, GRE, IP in IP or PPPoE is found, however these are stacked",
+          "[capture]") {
+  const auto length = [](const std::string& text) { return bytes(text).size(); };
+  const auto number = [](std::size_t value) { return fmt::format("{:04x}", value); };
+  const auto within_ip4 = [&](const std::string& protocol, const std::string& inner) {
+    return "4500" + number(20 + length(inner)) + "00004000 40" + protocol + "0000 0a000001 0a000002 " + inner;
+  };
+  const auto within_ip6 = [&](const std::string& next, const std::string& inner) {
+    return "60000000" + number(length(inner)) + next + "40" + kAddresses6 + inner;
+  };
+  const auto within_vxlan = [&](const std::string& frame) {
+    const std::string header = "0800000000002a00 ";
+    return within_ip4("11", "d903 12b5 " + number(16 + length(frame)) + " 0000" + header + frame);
+  };
+  for (const bool v6 : {false, true}) {
+    const std::string ip = v6 ? kV6 : kV4, type = v6 ? "86dd" : "0800";
+    const std::string frame = kEthernet + type + ip, ppp = v6 ? "0057" : "0021";
+    const std::string pppoe = kEthernet + "8864 1100 0001" + number(2 + length(ip)) + ppp + ip;
+    check_pal({LinkType::kEthernet, pppoe, v6});
+    check_pal({LinkType::kEthernet, kEthernet + "0800" + within_vxlan(frame), v6});
+    check_pal({LinkType::kRaw, within_vxlan(pppoe), v6});
+    check_pal({LinkType::kRaw, within_ip4("2f", "0000" + type + ip), v6});
+    check_pal({LinkType::kRaw, within_ip4("2f", "2000 6558 00000007" + frame), v6});
+    check_pal({LinkType::kRaw, within_ip4("2f", "b000" + type + "aaaa0000 00000007 00000001" + ip), v6});
+    check_pal({LinkType::kRaw, within_ip6("2f", "0000" + type + ip), v6});
+    check_pal({LinkType::kRaw, within_ip4(v6 ? "29" : "04", ip), v6});
+    check_pal({LinkType::kRaw, within_ip6(v6 ? "29" : "04", ip), v6});
+    const auto once_more = [&](const std::string& inner) { return within_ip4("04", inner); };
+    const std::string two = once_more(once_more(within_vxlan(frame)));
+    check_pal({LinkType::kRaw, two, v6});
+    CHECK(verdict_ip(once_more(two)) == kOther);
+  }
+  CHECK(verdict_ip(within_ip4("2f", "0001 880b 00000000" + kV4)) == kOther);  // PPTP
+  CHECK(verdict_ip(within_ip4("2f", "20")) == kMalformed);
+  CHECK(verdict(LinkType::kEthernet, kEthernet + "8864 1100 0001 0004 c021 01") == kOther);  // of PPP itself
+  // What comes to that port without the header is a datagram of its own.
+  CHECK(verdict_ip(within_ip4("11", "d903 12b5 000b 0000 70616c")) == kDatagram);
+  CHECK(verdict_ip("4500 0030 0000 2000 40 2f 0000" + kAddresses4 + "0000 0800" + kV4) == kFragment);
 }
 
 TEST_CASE("TCP, ICMP and ICMPv6 are other traffic, whole or in fragments", "[capture]") {

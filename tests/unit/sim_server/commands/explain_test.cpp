@@ -194,6 +194,9 @@ TEST_CASE("explain: what cutting keeps is there where something is cut, and left
   const Bench without(scene), with(scene + "cut_buttons = 1\n[cutting]\n");
   CHECK(with.omitted("cutting") == nullptr);
   CHECK(with.built("resection").where == with.line("[cutting]"));
+  CHECK_THAT(with.built("added mass").detail,
+             Catch::Contains("% more mass in motion") && Catch::Contains("added_mass = 0"));
+  CHECK(with.built("added mass").where == with.line("model = "));
   REQUIRE(without.omitted("cutting") != nullptr);
   CHECK(without.omitted("cutting")->bytes.value() == static_cast<double>(with.built("resection").bytes));
 }

@@ -252,6 +252,22 @@ TEST_CASE(
   CHECK(std::abs(before) < 0.05);  // 15 mm later
 }
 
+TEST_CASE("a blade of 5 m/s, which is through before it is felt, is flagged, and owes nothing later") {
+  const auto run = [](double speed) {
+    Simulation simulation(blade_scene("tensor_mass"), shaken_block({12, 6, 12}));
+    double x = -0.022;
+    for (; x < 0.03; x += speed * kStep) slide_at(simulation, x, true);
+    ToolAnswer last;
+    for (int i = 0; i < 40; ++i) last = slide_at(simulation, x, true);
+    CHECK(simulation.resection()->totals().separated_area > 1e-4);  // m^2
+    CHECK_FALSE(last.flagged);
+    CHECK(simulation.flagged().contact == simulation.resection()->totals().outrun_steps);
+    return simulation.flagged().contact;
+  };
+  CHECK(run(0.3) == 0);
+  CHECK(run(5) > 0);
+}
+
 TEST_CASE("a blade in a step of no time feels nothing that is not finite") {
   Simulation simulation(blade_scene("tensor_mass"), shaken_block({8, 4, 8}));
   for (int i = 0; i < 30; ++i) slide_at(simulation, -0.022 + 3e-4 * i, true);

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "sim_server/client_model/slow_modes.h"
-#include "sim_server/serving/captured_steps.h"
+#include "sim_server/serving/captured_rerun.h"
 #include "sim_server/serving/virtual_session.h"
 #include "sim_server/tissue/rayleigh_damping.h"
 #include "tests/support/catch.h"
@@ -55,7 +55,8 @@ std::uint64_t record(Simulation& simulation, const Trajectory& motion, const std
 std::vector<ForceSample> samples_in(const std::filesystem::path& file) {
   std::vector<ForceSample> samples;
   read_captured_steps(
-      file, [](const ToolState&) {}, [&](const CapturedAnswer& answer) { samples.push_back(answer.sample); });
+      file, [](std::uint64_t, const ToolState&) {},
+      [&](const CapturedAnswer& answer) { samples.push_back(answer.sample); });
   return samples;
 }
 
@@ -79,22 +80,20 @@ TEST_CASE("a recorded resection, stepped again from its capture alone, gives the
     const std::uint64_t hash = record(first, motion(folder, blade ? 0.016 : 0.008), folder.path() / "a.pcap");
     const ResectionTotals& totals = first.resection()->totals();
     REQUIRE((blade ? 6 * totals.splits : totals.tetrahedra) > 20);
-    ServedTools served(second);
-    std::vector<SessionInput> inputs(1);
+    CapturedRerun rerun(second, kRate);
     std::size_t answers = 0, remaining = 0;
     read_captured_steps(
-        folder.path() / "a.pcap", [&](const ToolState& state) { inputs[0].path.add(state); },
+        folder.path() / "a.pcap",
+        [&](std::uint64_t session, const ToolState& state) { rerun.take(session, state); },
         [&](const CapturedAnswer& answer) {
-          const double dt = 1e-9 * static_cast<double>(answer.state.t_ns - inputs[0].state.t_ns);
-          inputs[0].session = 1;
-          inputs[0].state = answer.state;
-          inputs[0].fresh = true;
-          const auto& outcome = served.step(inputs, dt).front();
+          rerun.take(answer);
+          const auto& outcome = rerun.step().front();
           CHECK(outcome.force.force == answer.sample.f_W);
           CHECK(outcome.answer->cuts == answer.sample.cuts);
           ++answers;
         },
         [&](std::uint64_t) { ++remaining; });
+    CHECK(rerun.off() == 0);
     CHECK(answers > 40);
     CHECK(remaining == 1);
     CHECK(second.state_hash() == hash);

@@ -45,6 +45,21 @@ TEST_CASE("a force that is a tenth too large is wrong by a tenth of its mean, of
   CHECK(errors.worst_force == errors.along.back());
 }
 
+TEST_CASE("what steps cost is told from what the mesh costs, whatever is left of it in the shortest steps") {
+  const Trace truth = spring(0.001, 1, Mat3::Zero());
+  for (const auto& [order, shorter] : {std::pair(1, 0.01), std::pair(1, 0.02), std::pair(2, 0.01)}) {
+    // 2 % by the mesh, and 8 % by steps of 40 ms: of 10 ms a quarter, or a sixteenth of that.
+    const double left = 0.08 * std::pow(shorter / 0.04, order);
+    const Trace own = spring(0.04, 1.1, Mat3::Zero()), finer = spring(shorter, 1.02 + left, Mat3::Zero());
+    const SplitError split = split_error(own, finer, order, truth, even_way());
+    CAPTURE(order, shorter);
+    const double mean =
+        errors_of(own, truth, even_way(), 0).force / 10;  // of a ramp, by its root mean square
+    CHECK(split.mesh == Approx(2 * mean).epsilon(1e-9));
+    CHECK(split.time_step == Approx(8 * mean / 1.02).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("what is right but late is felt late, by the step and the link, and held for a step") {
   constexpr double kDt = 0.04, kLatency = 0.01;
   const Trace truth = spring(0.001, 1, Mat3::Zero());
