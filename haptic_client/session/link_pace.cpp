@@ -24,7 +24,7 @@ constexpr std::uint16_t kAllParts =
 // At 30 steps a second, without a key: packed, 500 ticks a second are 0.2 Mbit/s; sparse, 0.05 Mbit/s.
 constexpr std::array<LevelRow, kLinkLevels> kLevels{{
     {"full", 0, -1, -1, kAllParts},
-    {"packed", 2, -1, 10, kAllParts},
+    {"packed", 2, -1, -1, kAllParts},
     {"plain", 2, 4, 4, kAllParts},
     {"lean", 2, 0, 1, kTangentOnly},
     {"sparse", 1.2, 0, 0, 0},  // 1: a step would now and then find no new state

@@ -36,7 +36,7 @@ class ToolEvents {
 
   struct Mark {
     Time t;
-    std::uint64_t received, lost;
+    std::uint64_t received, lost, ticks;
   };
   std::deque<Mark> marks_;
   SeenClient client_;
@@ -127,7 +127,7 @@ void ToolEvents::count(const PeerCounts& counts, Time now, SeenPeer& seen) {
     *this = {};  // whoever holds it next is another client
     return;
   }
-  marks_.push_back({now, counts.received, counts.lost});
+  marks_.push_back({now, counts.received, counts.lost, counts.ticks});
   while (marks_.size() > 2 && now - marks_.front().t > kCountedOver) marks_.pop_front();
   const std::string address = protocol::to_string(counts.endpoint);
   seen.held = true;
@@ -136,7 +136,8 @@ void ToolEvents::count(const PeerCounts& counts, Time now, SeenPeer& seen) {
   const double received = static_cast<double>(counts.received - marks_.front().received);
   const double lost = static_cast<double>(static_cast<std::int64_t>(counts.lost - marks_.front().lost));
   const double seconds = to_seconds(now - marks_.front().t);
-  seen.rate_hz = seconds > 0 ? received / seconds : 0;
+  const auto ticks = static_cast<double>(counts.ticks - marks_.front().ticks);
+  seen.rate_hz = seconds > 0 ? ticks / seconds : 0;
   seen.loss_percent = received + lost > 0 ? std::clamp(100 * lost / (received + lost), 0.0, 100.0) : 0;
 }
 

@@ -80,6 +80,7 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
   if (outcome.asking != nullptr || outcome.telemetry != nullptr) {
     PeerCounts& peer = peers_[outcome.asking != nullptr ? outcome.asking->tool : outcome.telemetry->tool];
     peer.received += stats_.received - received;
+    if (outcome.tool_state != nullptr) peer.ticks += protocol::ticks_of(datagram).size();
     peer.lost += stats_.lost - lost;  // less, where a late one takes a loss back
   }
 }
@@ -178,8 +179,9 @@ void NetLink::on_timer() {
 void NetLink::report_peers() {
   for (std::size_t i = 0; i < kMaxTools; ++i) {
     const auto* const member = sessions_.holder(static_cast<std::uint8_t>(i));
-    peers_[i] = member == nullptr ? PeerCounts{}
-                                  : PeerCounts{true, member->endpoint, peers_[i].received, peers_[i].lost};
+    peers_[i] = member == nullptr
+                    ? PeerCounts{}
+                    : PeerCounts{true, member->endpoint, peers_[i].received, peers_[i].lost, peers_[i].ticks};
     page_->tools[i].peer.write(peers_[i]);
   }
 }

@@ -14,7 +14,8 @@ namespace palpate::sim {
 struct PeerCounts {
   bool held = false;
   protocol::Endpoint endpoint{};
-  std::uint64_t received = 0, lost = 0;
+  std::uint64_t received = 0, lost = 0;  // datagrams
+  std::uint64_t ticks = 0;               // several of them may travel in one
 };
 
 /// Between the network thread and the thread that serves pages, of one tool.
