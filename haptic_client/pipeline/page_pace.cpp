@@ -1,6 +1,7 @@
 #include "haptic_client/pipeline/page_pace.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace palpate::client {
@@ -8,11 +9,13 @@ namespace {
 
 constexpr Time kPeriod = std::chrono::milliseconds(100);  // between two changes of the rate
 constexpr Time kWaits = std::chrono::milliseconds(30);    // in a queue: longer is congestion
+constexpr int kJitters = 4, kJitterOver = 16;             // of the jitter; samples over which it is taken
 constexpr Time kWindow = std::chrono::seconds(10);        // of the fastest page
 constexpr Time kLeastPatience = std::chrono::milliseconds(200),
                kMostPatience = std::chrono::seconds(2);  // until lost
 constexpr double kFaster = 1.5, kSlower = 0.5;           // factors on the rate
-constexpr double kMostTokens = 8;                        // pages at once
+constexpr double kStarts = 2;      // that until a page first waits (RFC 5681, slow start)
+constexpr double kMostTokens = 8;  // pages at once
 
 }  // namespace
 
@@ -39,6 +42,19 @@ void PagePace::came(Time took) noexcept {
   backoff_ = {};
 }
 
+void PagePace::heard(Time age) noexcept {
+  const double now = std::clamp(to_seconds(age), 0.0, to_seconds(kMostPatience)),
+               change = now - age_.value_or(now);
+  opposed_ += (-change * change_ - opposed_) / kJitterOver;
+  change_ = change;
+  age_ = now;
+}
+
+/// Standard deviation of the delays of samples, without what a queue does.
+Time PagePace::jitter() const noexcept {
+  return from_seconds(std::sqrt(std::max(opposed_, 0.0)));
+}
+
 std::optional<Time> PagePace::fastest() const noexcept {
   if (!fastest_ || !fastest_before_) return fastest_ ? fastest_ : fastest_before_;
   return std::min(*fastest_, *fastest_before_);
@@ -47,16 +63,17 @@ std::optional<Time> PagePace::fastest() const noexcept {
 /// True if a page of this period waited in a queue.
 bool PagePace::waits() const noexcept {
   const auto fastest = this->fastest();
-  return fastest && slowest_ - *fastest > kWaits;
+  return fastest && slowest_ - *fastest > kWaits + kJitters * jitter();
 }
 
 void PagePace::adapt() noexcept {
   if (lost_ > 0) backoff_ = std::min(2 * patience(), kMostPatience);
   rose_ = !waits() && lost_ == 0 && came_ > 0;
   if (waits() || lost_ > 0) {
+    has_waited_ = true;
     rate_ = std::max(kSlower * rate_, kSlowest);
   } else if (rose_) {
-    rate_ = std::min(kFaster * rate_, kFastest);
+    rate_ = std::min((has_waited_ ? kFaster : kStarts) * rate_, kFastest);
   }
   came_ = lost_ = 0;
   slowest_ = {};

@@ -8,10 +8,13 @@
 namespace palpate::client {
 
 /// Rate limit of page requests, so that pages do not fill the queue of a slow link and delay samples. Each
-/// 100 ms the rate grows by half while pages arrive almost as fast as the fastest one. It is halved where a
-/// page waited 30 ms longer or was lost, and at once where the rate had grown. LEDBAT (RFC 6817) takes
-/// queueing delay for the signal of congestion likewise. The fastest is that of the last 10 to 20 s, as RFC
-/// 6817 has it for a changed route. Pure; haptic thread.
+/// 100 ms the rate doubles, and grows by half once a page has waited, while pages arrive almost as fast as
+/// the fastest one. It is halved where a page waited 30 ms longer and four times what the delays of samples
+/// jitter by, or was lost; at once where the rate had grown. Jitter is what makes one sample later and the
+/// next earlier: the covariance of the changes from sample to sample is minus its variance, while a queue
+/// that grows or drains makes both alike. LEDBAT (RFC 6817) takes queueing delay for the signal of congestion
+/// likewise. The fastest is that of the last 10 to 20 s, as RFC 6817 has it for a changed route. Pure; haptic
+/// thread.
 class PagePace {
  public:
   static constexpr double kSlowest = 8, kFastest = 1000;  ///< pages a second
@@ -22,6 +25,8 @@ class PagePace {
   /// A page came `took` after it was asked for, once: which of several asks was answered nobody knows (Karn
   /// and Partridge 1987).
   void came(Time took) noexcept;
+  /// A sample came so long after the tool was where it says.
+  void heard(Time age) noexcept;
   /// Counts pages that are requested once more.
   void lost(std::uint64_t pages) noexcept { lost_ += pages; }
 
@@ -32,14 +37,18 @@ class PagePace {
 
  private:
   void adapt() noexcept;
+  Time jitter() const noexcept;
   bool waits() const noexcept;
   std::optional<Time> fastest() const noexcept;
 
   double rate_ = 30, tokens_ = 2;                 // a slow link is known only once something waited in it
+  bool has_waited_ = false;                       // some page did, or was lost
   bool rose_ = false;                             // the rate did last
   std::uint64_t came_ = 0, lost_ = 0;             // in this period
   std::optional<Time> fastest_, fastest_before_;  // in this window of time, and in the one before
   Time slowest_{};                                // in this period
+  std::optional<double> age_;                     // of the newest sample, s
+  double change_ = 0, opposed_ = 0;               // from the one before, s; minus the covariance of two, s^2
   Time backoff_{};                                // the least patience, since pages were lost
   Time last_{}, period_{}, window_{};
 };

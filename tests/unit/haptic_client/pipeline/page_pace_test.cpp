@@ -1,6 +1,7 @@
 #include "haptic_client/pipeline/page_pace.h"
 
 #include <deque>
+#include <random>
 
 #include "tests/support/catch.h"
 
@@ -14,19 +15,26 @@ namespace {
 /// each 8 ms.
 struct Line {
   double bytes_per_s;
-  Time delay, queue = 200ms;
+  Time delay, queue = 200ms, jitter{};  // of each way, even between 0 and this
   PagePace pace{};
   std::deque<std::pair<Time, Time>> on_the_way{};  // asked, arrives
   Time now = 1000s, free = 0s;
   std::uint64_t came = 0, dropped = 0;
+  std::mt19937 random{1};
+  Time sampled{};
   Time longest_wait{};
 
   void run(Time span) {
     for (const Time end = now + span; now < end; now += 8ms) {
-      while (!on_the_way.empty() && on_the_way.front().second <= now) {
-        pace.came(now - on_the_way.front().first);
-        on_the_way.pop_front();
+      std::erase_if(on_the_way, [this](const auto& page) {
+        if (page.second > now) return false;
+        pace.came(now - page.first);
         ++came;
+        return true;
+      });
+      if (now - sampled >= 32ms) {  // a sample waits as pages do
+        pace.heard(std::max(free - now, Time{}) + delay + both_ways());
+        sampled = now;
       }
       const std::size_t pages = pace.allowed(now);
       pace.requested(pages);
@@ -42,7 +50,11 @@ struct Line {
       return;
     }
     free += from_seconds(937 / bytes_per_s);
-    on_the_way.emplace_back(now, free + delay);
+    on_the_way.emplace_back(now, free + delay + both_ways());
+  }
+  Time both_ways() {
+    std::uniform_real_distribution<double> one(0, to_seconds(jitter));
+    return from_seconds(one(random) + one(random));
   }
 };
 
@@ -68,6 +80,26 @@ TEST_CASE(
   CHECK(line.dropped == 0);
   CHECK(line.longest_wait < 100ms);
   CHECK(static_cast<double>(line.came) > 0.5 * 20 * 125e3 / 937);
+}
+
+TEST_CASE("pages: jitter of 40 ms each way is no queue: 800 pages come within 5 s on a quick link") {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    Line line{.bytes_per_s = 1e8, .delay = 5ms, .jitter = 40ms};
+    line.random.seed(seed);
+    line.run(5s);
+    CAPTURE(seed, line.pace.rate());
+    CHECK(line.came > 800);
+  }
+}
+
+TEST_CASE("pages: a queue that they fill is told from jitter, too") {
+  Line line{.bytes_per_s = 125e3, .delay = 5ms, .queue = 400ms, .jitter = 20ms};
+  line.run(5s);
+  line.longest_wait = {};
+  line.dropped = 0;
+  line.run(20s);
+  CHECK(line.dropped == 0);
+  CHECK(line.longest_wait < 200ms);
 }
 
 TEST_CASE("pages: the patience is three times what the quickest took, 200 ms at least and 2 s at most") {
