@@ -79,10 +79,12 @@ std::optional<ForceJumps> unexplained_jumps(const Trace& trace) {
 SplitError split_error(const Trace& own, const Trace& shorter, int order, const Trace& reference,
                        const Trajectory& motion) {
   const double fraction = 1 / (std::pow(own.dt / shorter.dt, order) - 1);  // that shorter steps leave
-  Trace limit = own;
+  Trace correction = own, limit = shorter;
+  for (std::size_t k = 0; k < own.forces.size(); ++k)
+    correction.forces[k] = fraction * (shorter.forces[same_time(own, shorter, k)] - own.forces[k]);
   for (std::size_t k = 0; k < limit.forces.size(); ++k) {
-    const Vec3& force = shorter.forces[same_time(own, shorter, k)];
-    limit.forces[k] = force + fraction * (force - own.forces[k]);
+    const double t = static_cast<double>(k + 1) * limit.dt;
+    limit.forces[k] += std::min(1.0, t / own.dt) * force_at(correction, t);  // a run begins without a force
   }
   return {errors_of(limit, reference, motion, 0).force, errors_of(own, limit, motion, 0).force};
 }

@@ -29,7 +29,8 @@ struct SplitError {
   double time_step = 0;  ///< of the force from there
 };
 /// Splits the error of a trace by one with shorter steps, a whole number of them in each of `own`: what steps
-/// cost goes with their length to the power of `order` (Richardson 1911, Phil. Trans. A 210:307).
+/// cost goes with their length to the power of `order` (Richardson 1911, Phil. Trans. A 210:307). The error
+/// by the mesh is that at the ends of the shorter steps, which look at the motion more often.
 SplitError split_error(const Trace& own, const Trace& shorter, int order, const Trace& reference,
                        const Trajectory& motion);
 
