@@ -267,7 +267,7 @@ std::optional<std::size_t> read_earlier_ticks(const ToolState& newest, std::span
   for (std::size_t i = 0; i < count; ++i) {
     const ToolState later = i > 1 ? out[i - 2] : after;
     out[i] = unpack(i > 0 ? out[i - 1] : after, i > 0 ? &later : nullptr, in);
-    if (!in.is_valid() || !valid(out[i])) return {};
+    if (!in.is_valid() || !valid(out[i]) || (out[i].flags & ToolState::kHasEarlierTicks) != 0) return {};
   }
   return count;
 }

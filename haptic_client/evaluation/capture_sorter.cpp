@@ -83,7 +83,8 @@ std::optional<std::size_t> CaptureSorter::sort_states(std::span<const ToolState>
   }
   if (!link->up.accept(header.sequence)) return {};
   // Before the first tick, of a tool that waits for others to be let in: it says nothing of a place.
-  if (ticks.front().tick == 1 && (ticks.front().flags & ToolState::kDeviceLost) != 0) return {};
+  if (ticks.size() == 1 && ticks.front().tick == 1 && (ticks.front().flags & ToolState::kDeviceLost) != 0)
+    return {};
   for (const ToolState& tick : ticks) add_tick(*run, tick);
   return run - runs_.data();
 }

@@ -1,7 +1,6 @@
 #include "haptic_client/pipeline/page_pace.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace palpate::client {
@@ -9,7 +8,6 @@ namespace {
 
 constexpr Time kPeriod = std::chrono::milliseconds(100);  // between two changes of the rate
 constexpr Time kWaits = std::chrono::milliseconds(30);    // in a queue: longer is congestion
-constexpr int kJitters = 4, kJitterOver = 16;             // of the jitter; samples over which it is taken
 constexpr Time kWindow = std::chrono::seconds(10);        // of the fastest page
 constexpr Time kLeastPatience = std::chrono::milliseconds(200),
                kMostPatience = std::chrono::seconds(2);  // until lost
@@ -42,19 +40,6 @@ void PagePace::came(Time took) noexcept {
   backoff_ = {};
 }
 
-void PagePace::heard(Time age) noexcept {
-  const double now = std::clamp(to_seconds(age), 0.0, to_seconds(kMostPatience)),
-               change = now - age_.value_or(now);
-  opposed_ += (-change * change_ - opposed_) / kJitterOver;
-  change_ = change;
-  age_ = now;
-}
-
-/// Standard deviation of the delays of samples, without what a queue does.
-Time PagePace::jitter() const noexcept {
-  return from_seconds(std::sqrt(std::max(opposed_, 0.0)));
-}
-
 std::optional<Time> PagePace::fastest() const noexcept {
   if (!fastest_ || !fastest_before_) return fastest_ ? fastest_ : fastest_before_;
   return std::min(*fastest_, *fastest_before_);
@@ -63,7 +48,7 @@ std::optional<Time> PagePace::fastest() const noexcept {
 /// True if a page of this period waited in a queue.
 bool PagePace::waits() const noexcept {
   const auto fastest = this->fastest();
-  return fastest && slowest_ - *fastest > kWaits + kJitters * jitter();
+  return fastest && slowest_ - *fastest > kWaits + jitter_.most();
 }
 
 void PagePace::adapt() noexcept {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "common/jitter.h"
 #include "common/time.h"
 
 namespace palpate::client {
@@ -10,11 +11,9 @@ namespace palpate::client {
 /// Rate limit of page requests, so that pages do not fill the queue of a slow link and delay samples. Each
 /// 100 ms the rate doubles, and grows by half once a page has waited, while pages arrive almost as fast as
 /// the fastest one. It is halved where a page waited 30 ms longer and four times what the delays of samples
-/// jitter by, or was lost; at once where the rate had grown. Jitter is what makes one sample later and the
-/// next earlier: the covariance of the changes from sample to sample is minus its variance, while a queue
-/// that grows or drains makes both alike. LEDBAT (RFC 6817) takes queueing delay for the signal of congestion
-/// likewise. The fastest is that of the last 10 to 20 s, as RFC 6817 has it for a changed route. Pure; haptic
-/// thread.
+/// jitter by, or was lost; at once where the rate had grown. LEDBAT (RFC 6817) takes queueing delay for the
+/// signal of congestion likewise. The fastest is that of the last 10 to 20 s, as RFC 6817 has it for a
+/// changed route. Pure; haptic thread.
 class PagePace {
  public:
   static constexpr double kSlowest = 8, kFastest = 1000;  ///< pages a second
@@ -26,7 +25,7 @@ class PagePace {
   /// and Partridge 1987).
   void came(Time took) noexcept;
   /// A sample came so long after the tool was where it says.
-  void heard(Time age) noexcept;
+  void heard(Time age) noexcept { jitter_.heard(age); }
   /// Counts pages that are requested once more.
   void lost(std::uint64_t pages) noexcept { lost_ += pages; }
 
@@ -37,7 +36,6 @@ class PagePace {
 
  private:
   void adapt() noexcept;
-  Time jitter() const noexcept;
   bool waits() const noexcept;
   std::optional<Time> fastest() const noexcept;
 
@@ -47,8 +45,7 @@ class PagePace {
   std::uint64_t came_ = 0, lost_ = 0;             // in this period
   std::optional<Time> fastest_, fastest_before_;  // in this window of time, and in the one before
   Time slowest_{};                                // in this period
-  std::optional<double> age_;                     // of the newest sample, s
-  double change_ = 0, opposed_ = 0;               // from the one before, s; minus the covariance of two, s^2
+  Jitter jitter_;                                 // of samples
   Time backoff_{};                                // the least patience, since pages were lost
   Time last_{}, period_{}, window_{};
 };

@@ -75,7 +75,7 @@ bool LinkPace::is_due(Time now, double rate_hz) noexcept {
   const double per_step = row_of(level_).states_per_step;
   if (per_step == 0) return true;
   const double steps = rate_hz > 0 ? std::min(rate_hz, kMostSteps) : kMostSteps;
-  return may_happen(per_step * steps, sent_, now);
+  return may_happen(std::max(per_step * steps, kFewestStates), sent_, now);
 }
 
 void LinkPace::shrink(ToolState& state) noexcept {
@@ -103,12 +103,13 @@ void LinkPace::sample(const ForceSample& sample, Time age, Time now) noexcept {
   }
   const Time on_the_way = age - std::clamp(Time{sample.step_ns}, Time{}, age);
   const Time least = least_seen(on_the_way, now);
+  jitter_.heard(on_the_way);
   if (look_.came == 0) look_ = {.began = now, .least_age = on_the_way};
   look_.least_age = std::min(look_.least_age, on_the_way);
   look_.newest = sample.number;
   look_.uplink = sample.uplink;
   if (++look_.came < kSamplesOfALook) return;
-  judge(look_.least_age - least, now);
+  judge(std::max(look_.least_age - least - jitter_.most(), Time{}), now);
   before_ = std::exchange(look_, {});
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "common/jitter.h"
 #include "common/time.h"
 #include "protocol/messages.h"
 
@@ -22,10 +23,10 @@ const char* name_of(LinkLevel level) noexcept;
 
 /// Decides how much travels, so that the queue of a slow link does not grow. A queue delays all samples: the
 /// least age of a few of them stands above that of the last 10 to 20 s (as in `PagePace`, after LEDBAT, RFC
-/// 6817). Where it grows meanwhile, or datagrams are lost, or it stays, the level goes down by one. After a
-/// calm time the level goes up by one; where that fails, twice the time passes until the next trial. Loss
-/// alone changes nothing, nor does a way that becomes longer at once. A session begins packed. Pure; network
-/// thread; no allocation.
+/// 6817), by more than jitter explains (`Jitter`). Where it grows meanwhile, or datagrams are lost, or it
+/// stays, the level goes down by one. After a calm time the level goes up by one; where that fails, twice the
+/// time passes until the next trial. Loss alone changes nothing, nor does a way that becomes longer at once.
+/// A session begins packed. Pure; network thread; no allocation.
 class LinkPace {
  public:
   /// A sample came at `now`. `age`: since its tool position was read.
@@ -45,6 +46,8 @@ class LinkPace {
   /// Time from the first tick to the newest that was spent on each level.
   const std::array<Time, kLinkLevels>& spent() const noexcept { return spent_; }
 
+  /// States a second that leave at least: a server takes a longer gap for a tool that went away.
+  static constexpr double kFewestStates = 20;
   static constexpr double kMostSteps = 30;  ///< a second, that a link below `kFull` carries
   static constexpr Time kWaits = std::chrono::milliseconds(50);  ///< in a queue: longer is congestion
 
@@ -71,6 +74,7 @@ class LinkPace {
   std::optional<Time> least_, least_before_;  // age, in this window of time and in the one before
   Time window_{}, delay_{};                   // delay: of the look before
   Look look_, before_;
+  Jitter jitter_;
 
   static constexpr Time kFirstCalm = std::chrono::seconds(1);
 };

@@ -95,8 +95,10 @@ void NetLink::on_tool_states() {
     pace_.shrink(state);
     if (!pace_.packs_ticks()) waiting_.clear();
     waiting_.push_back(state);
+    const bool news = state.buttons != buttons_ || (state.flags & protocol::ToolState::kRearmed) != 0;
+    buttons_ = state.buttons;
     const bool due = pace_.is_due(Time{state.t_ns}, session_.welcome().rate_hz);
-    if (!due && waiting_.size() <= protocol::kMostEarlierTicks) continue;
+    if (!due && !news && waiting_.size() <= protocol::kMostEarlierTicks) continue;
     send_ticks(waiting_);
     waiting_.clear();
   }

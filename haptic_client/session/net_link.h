@@ -63,6 +63,7 @@ class NetLink {
   bool ticking_ = false;  // tool states have come from the haptic loop
   int idle_timers_ = 0;   // looks at the session before that
   LinkPace pace_;
+  std::uint16_t buttons_ = 0;                 // of the newest tick: another leaves at once
   std::vector<protocol::ToolState> waiting_;  // ticks that the next datagram takes along, oldest first
   protocol::LinkStats stats_;
   LinkFigures figures_;

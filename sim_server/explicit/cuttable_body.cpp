@@ -108,8 +108,9 @@ void CuttableBody::release(std::span<const std::vector<int>> floating, const Tet
     std::ranges::copy_if(vertices, std::inserter(moving, moving.end()),
                          [&](int v) { return place_of(v) >= 0; });
     for (const int v : vertices) {
-      if (!moving.contains(v)) parts.insert(rest->part_of(v));
+      if (!moving.contains(v)) parts.insert(rest ? rest->part_of(v) : -1);
     }
+    if (moving.empty() || parts.contains(-1)) continue;  // something holds it
     for (const int part : parts) {
       rest->end_modes(part, tensors, motion.state.v);
       condensed.emplace_back(part, *moving.begin());

@@ -54,7 +54,7 @@ void CapturedRerun::begin_step(const CapturedAnswer& answer) {
     dt_ = period_;
     // A step that took longer than a period puts off the next.
     const double next = std::max(period_, 1e-9 * static_cast<double>(last_step_ns_));
-    const long unanswered = dt > 0 && !answer.after_pause ? std::lround((dt - next) / period_) : 0;
+    const long unanswered = dt > 0 && !answer.after_pause ? std::lround((dt - next) / next) : 0;
     for (long k = 0; k < unanswered; ++k) step();
   }
   last_step_ns_ = by_clock ? answer.sample.step_ns : 0;

@@ -70,17 +70,18 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
   if (outcome.departed != nullptr) tool_is_free(outcome.departed->tool);
   if (outcome.telemetry != nullptr && page_ != nullptr)
     page_->tools[outcome.telemetry->tool].telemetry.push(*outcome.telemetry);
+  const std::vector<protocol::ToolState> ticks = outcome.tool_state != nullptr || outcome.asking != nullptr
+                                                     ? protocol::ticks_of(datagram)
+                                                     : std::vector<protocol::ToolState>();
   if (outcome.tool_state != nullptr) {
     requested_[outcome.tool_state->tool] = socket_.requested();
-    pass_on(datagram.header.session, protocol::ticks_of(datagram));
+    pass_on(datagram.header.session, ticks);
   }
-  if (outcome.asking != nullptr) {
-    for (const protocol::ToolState& tick : protocol::ticks_of(datagram)) send_pages(tick, t);
-  }
+  if (outcome.asking != nullptr) send_pages(ticks, t);
   if (outcome.asking != nullptr || outcome.telemetry != nullptr) {
     PeerCounts& peer = peers_[outcome.asking != nullptr ? outcome.asking->tool : outcome.telemetry->tool];
     peer.received += stats_.received - received;
-    if (outcome.tool_state != nullptr) peer.ticks += protocol::ticks_of(datagram).size();
+    if (outcome.tool_state != nullptr) peer.ticks += ticks.size();
     peer.lost += stats_.lost - lost;  // less, where a late one takes a loss back
   }
 }
@@ -118,18 +119,25 @@ void NetLink::pass_on(std::uint64_t session, std::span<const protocol::ToolState
   mailboxes_.tools[state.tool].input.write(input);
 }
 
-/// The pages it asks for, each once, if they are of the surface that we have; what is lost, or too much at
-/// once, will be asked for again.
-void NetLink::send_pages(const protocol::ToolState& state, Time t) {
-  if ((state.flags & protocol::ToolState::kAsksPages) == 0) return;
-  std::shared_ptr<SurfacePager>& pager = pagers_[state.tool];
-  mailboxes_.tools[state.tool].pager.read(pager);
-  if (pager == nullptr || state.surface_version != pager->state().version) return;
-  auto* const member = sessions_.holder(state.tool);
+/// The pages that some ticks ask for, each once, if they are of the surface that we have; what is lost, or
+/// too much at once, will be asked for again.
+void NetLink::send_pages(std::span<const protocol::ToolState> ticks, Time t) {
+  const std::uint8_t tool = ticks.back().tool;
+  std::shared_ptr<SurfacePager>& pager = pagers_[tool];
+  mailboxes_.tools[tool].pager.read(pager);
+  if (pager == nullptr) return;
+  auto* const member = sessions_.holder(tool);
+  std::vector<std::uint32_t> sent;
   protocol::SurfacePage page;
-  for (auto number = state.pages.begin(); number != state.pages.end(); ++number) {
-    if (std::find(state.pages.begin(), number, *number) != number) continue;
-    if (pager->page(*number, page) && page_buckets_[state.tool].take(t)) send(*member, page);
+  for (const protocol::ToolState& tick : ticks) {
+    if ((tick.flags & protocol::ToolState::kAsksPages) == 0) continue;
+    if (tick.surface_version != pager->state().version) continue;
+    for (const std::uint32_t number : tick.pages) {
+      if (number == protocol::ToolState::kNoPage || std::ranges::find(sent, number) != sent.end()) continue;
+      if (!page_buckets_[tool].take(t)) return;
+      sent.push_back(number);
+      if (pager->page(number, page)) send(*member, page);
+    }
   }
 }
 

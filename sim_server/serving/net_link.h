@@ -48,7 +48,7 @@ class NetLink {
   void tell_uplink(protocol::ForceSample& sample) const;
   void send_pointers();
   void pass_on(std::uint64_t session, std::span<const protocol::ToolState> ticks);
-  void send_pages(const protocol::ToolState& state, Time t);
+  void send_pages(std::span<const protocol::ToolState> ticks, Time t);
   void note_holders();
   void report_peers();
   void on_timer();

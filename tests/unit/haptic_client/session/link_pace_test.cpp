@@ -161,6 +161,25 @@ TEST_CASE("link pace: neither loss alone, nor a way that becomes longer at once,
   CHECK(to_seconds(spent(longer, LinkLevel::kFull)) > 28);
 }
 
+TEST_CASE("link pace: jitter of 40 and of 80 ms each way is no queue") {
+  for (const double jitter : {0.04, 0.08}) {
+    const PacedSession session =
+        PacedPair({.delay = 0.01, .jitter = jitter}, {.delay = 0.01, .jitter = jitter}).run(120s);
+    CAPTURE(jitter, to_seconds(spent(session, LinkLevel::kPlain)),
+            to_seconds(spent(session, LinkLevel::kSparse)));
+    CHECK(to_seconds(spent(session, LinkLevel::kFull)) > 110);
+    CHECK(spent(session, LinkLevel::kLean) + spent(session, LinkLevel::kSparse) == 0s);
+  }
+}
+
+TEST_CASE("link pace: at one step a second, too, twenty states a second leave at least") {
+  LinkPace pace;
+  int left = 0;
+  for (Time t = 10s; t < 12s; t += 2ms) left += pace.is_due(t, 1) ? 1 : 0;
+  CHECK(left >= 40);
+  CHECK(left <= 42);
+}
+
 TEST_CASE("link pace: a slow server and a pause are no slow link") {
   LinkPace pace;
   ForceSample sample{.number = 0};
