@@ -7,24 +7,28 @@
 
 namespace palpate {
 
-/// How much the delays of datagrams that come one after the other jitter, told from a queue: jitter makes one
-/// later and the next earlier, so that the covariance of two changes in a row is minus its variance; a queue
-/// that grows or drains makes both alike. Over some 16 datagrams. Pure; no allocation.
+/// Measures by how much the delays of datagrams jitter, and leaves out what a queue does to them. Jitter
+/// makes one datagram later and the next one earlier: the covariance of two changes of delay in a row is
+/// minus its variance. A queue that grows or drains makes both changes alike, and that covariance positive.
+/// Pure; no allocation.
 class Jitter {
  public:
-  /// A datagram came so long after it was made.
-  void heard(Time delay) noexcept {
-    const double now = std::clamp(to_seconds(delay), 0.0, 2.0), change = now - last_.value_or(now);
-    opposed_ += (-change * change_ - opposed_) / 16;
+  /// Takes the delay of the next datagram, from when it was made until it came.
+  void add(Time delay) noexcept {
+    const double now = std::clamp(to_seconds(delay), 0.0, kMostDelay), change = now - last_.value_or(now);
+    opposed_ += (-change * change_ - opposed_) / kDatagrams;
     change_ = change;
     last_ = now;
   }
   /// Returns the standard deviation of delays on a way without a queue.
   Time deviation() const noexcept { return from_seconds(std::sqrt(std::max(opposed_, 0.0))); }
-  /// Returns how much of a delay may be jitter: four times that.
-  Time most() const noexcept { return 4 * deviation(); }
+  /// Returns how much of a delay may be jitter.
+  Time most() const noexcept { return kDeviations * deviation(); }
 
  private:
+  static constexpr double kMostDelay = 2;   // s: of one datagram that came later still
+  static constexpr double kDatagrams = 16;  // over which the variance is a mean, half a second at 30 Hz
+  static constexpr int kDeviations = 4;
   std::optional<double> last_;       // s
   double change_ = 0, opposed_ = 0;  // from the one before, s; minus the covariance of two, s^2
 };

@@ -263,7 +263,7 @@ struct RelaxedState {
   }
 };
 
-/// What the server has heard of the datagrams of a session.
+/// Counts of the datagrams of a session, as the server has heard them.
 struct UplinkCounts {
   std::uint32_t came = 0;  ///< datagrams, without duplicates
   std::uint32_t lost = 0;  ///< sequence numbers up to the highest that came, without those that came

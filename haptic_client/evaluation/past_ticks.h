@@ -31,8 +31,7 @@ struct RightForce {
 /// The ticks since the newest sample, which wait for the next one: only then is it known which force was
 /// right. A ring, of as long as an outage takes to be noticed three times; ticks that had to make room, as no
 /// sample came for longer, are never judged, nor are those beside a sample that the server calls not settled.
-/// Haptic thread; only the constructor and `follow_surface`
-/// allocate.
+/// Haptic thread; only the constructor and `follow_surface` allocate.
 class PastTicks {
  public:
   explicit PastTicks(double rate_hz);
@@ -53,7 +52,7 @@ class PastTicks {
   /// Ticks with a rendered force that nothing can judge, as no sample came soon enough after them, or the
   /// next one was of another session.
   std::uint64_t unjudged() const noexcept { return unjudged_; }
-  /// Those that nothing can judge as a sample around them was not settled.
+  /// Ticks with a rendered force that nothing can judge, as a sample around them was not settled.
   std::uint64_t unsettled() const noexcept { return unsettled_; }
   /// After how many others a tick is judged at most, or never.
   static std::size_t longest_wait(double rate_hz);
@@ -68,7 +67,6 @@ class PastTicks {
     unjudged_ += at(0).rendered ? 1 : 0;
     pop();
   }
-
   void drop_unsettled(Time until) noexcept {
     for (; waiting_ > 0 && at(0).path.t < until; pop()) unsettled_ += at(0).rendered ? 1 : 0;
   }

@@ -8,7 +8,6 @@ namespace {
 
 constexpr Time kPeriod = std::chrono::milliseconds(100);  // between two changes of the rate
 constexpr Time kWaits = std::chrono::milliseconds(30);    // in a queue: longer is congestion
-constexpr Time kWindow = std::chrono::seconds(10);        // of the fastest page
 constexpr Time kLeastPatience = std::chrono::milliseconds(200),
                kMostPatience = std::chrono::seconds(2);  // until lost
 constexpr double kFaster = 1.5, kSlower = 0.5;           // factors on the rate
@@ -25,29 +24,21 @@ std::size_t PagePace::allowed(Time now) noexcept {
     adapt();
     period_ = now;
   }
-  if (now - window_ >= kWindow) {
-    fastest_before_ = std::exchange(fastest_, std::nullopt);
-    window_ = now;
-  }
+  fastest_.pass(now);
   tokens_ = std::min(tokens_ + rate_ * dt, kMostTokens);
   return static_cast<std::size_t>(std::max(tokens_, 0.0));
 }
 
 void PagePace::came(Time took) noexcept {
   ++came_;
-  fastest_ = std::min(fastest_.value_or(took), took);
+  fastest_.add(took);
   slowest_ = std::max(slowest_, took);
   backoff_ = {};
 }
 
-std::optional<Time> PagePace::fastest() const noexcept {
-  if (!fastest_ || !fastest_before_) return fastest_ ? fastest_ : fastest_before_;
-  return std::min(*fastest_, *fastest_before_);
-}
-
 /// True if a page of this period waited in a queue.
 bool PagePace::waits() const noexcept {
-  const auto fastest = this->fastest();
+  const std::optional<Time> fastest = fastest_.least();
   return fastest && slowest_ - *fastest > kWaits + jitter_.most();
 }
 
@@ -65,7 +56,7 @@ void PagePace::adapt() noexcept {
 }
 
 Time PagePace::patience() const noexcept {
-  const Time usual = std::clamp(3 * fastest().value_or(Time{}), kLeastPatience, kMostPatience);
+  const Time usual = std::clamp(3 * fastest_.least().value_or(Time{}), kLeastPatience, kMostPatience);
   return std::max(usual, backoff_);
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "common/jitter.h"
+#include "common/recent_least.h"
 #include "common/time.h"
 
 namespace palpate::client {
@@ -25,7 +26,7 @@ class PagePace {
   /// and Partridge 1987).
   void came(Time took) noexcept;
   /// A sample came so long after the tool was where it says.
-  void heard(Time age) noexcept { jitter_.heard(age); }
+  void heard(Time age) noexcept { jitter_.add(age); }
   /// Counts pages that are requested once more.
   void lost(std::uint64_t pages) noexcept { lost_ += pages; }
 
@@ -37,17 +38,16 @@ class PagePace {
  private:
   void adapt() noexcept;
   bool waits() const noexcept;
-  std::optional<Time> fastest() const noexcept;
 
-  double rate_ = 30, tokens_ = 2;                 // a slow link is known only once something waited in it
-  bool has_waited_ = false;                       // some page did, or was lost
-  bool rose_ = false;                             // the rate did last
-  std::uint64_t came_ = 0, lost_ = 0;             // in this period
-  std::optional<Time> fastest_, fastest_before_;  // in this window of time, and in the one before
-  Time slowest_{};                                // in this period
-  Jitter jitter_;                                 // of samples
-  Time backoff_{};                                // the least patience, since pages were lost
-  Time last_{}, period_{}, window_{};
+  double rate_ = 30, tokens_ = 2;      // a slow link is known only once something waited in it
+  bool has_waited_ = false;            // some page did, or was lost
+  bool rose_ = false;                  // the rate did last
+  std::uint64_t came_ = 0, lost_ = 0;  // in this period
+  RecentLeast fastest_;
+  Time slowest_{};  // in this period
+  Jitter jitter_;   // of samples
+  Time backoff_{};  // the least patience, since pages were lost
+  Time last_{}, period_{};
 };
 
 }  // namespace palpate::client

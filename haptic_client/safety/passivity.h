@@ -81,7 +81,7 @@ class Passivity {
     Vec3 p = Vec3::Zero(), f = Vec3::Zero();
     Time t{};
   };
-  /// How the gain came to be what it is.
+  /// History of the gain, by which it returns quickly or slowly.
   struct Recovery {
     bool returned = false;  // quickly, by some of it, since it fell
     bool is_slow = false;   // it fell again after that

@@ -78,7 +78,7 @@ class HeldTool {
   std::uint64_t ticks_ = 0;  // when looked at last
   int standstills_ = 0;      // looks since then
   bool real_time_ = false;
-  /// What the log said last.
+  /// States that the log has told.
   struct Told {
     bool silent = false, weak = false, paused = false, slow = false;
   } told_;

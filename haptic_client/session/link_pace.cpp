@@ -39,8 +39,7 @@ constexpr Time kSettles = 300ms;              // after a change, until its effec
 constexpr Time kStays = 1500ms;               // as long below full: what is sent fills the link
 constexpr Time kCalm = 25ms;                  // in a queue: no congestion
 constexpr Time kCalmAfterFailure = 10s, kLongestCalm = 300s;
-constexpr Time kTrial = 10s;   // congestion so soon after the level went up: it went too far
-constexpr Time kWindow = 10s;  // of the least age
+constexpr Time kTrial = 10s;  // congestion so soon after the level went up: it went too far
 
 const LevelRow& row_of(LinkLevel level) {
   return kLevels[static_cast<std::size_t>(level)];
@@ -102,24 +101,16 @@ void LinkPace::sample(const ForceSample& sample, Time age, Time now) noexcept {
     if (paused) return;
   }
   const Time on_the_way = age - std::clamp(Time{sample.step_ns}, Time{}, age);
-  const Time least = least_seen(on_the_way, now);
-  jitter_.heard(on_the_way);
+  least_.pass(now);
+  least_.add(on_the_way);
+  jitter_.add(on_the_way);
   if (look_.came == 0) look_ = {.began = now, .least_age = on_the_way};
   look_.least_age = std::min(look_.least_age, on_the_way);
   look_.newest = sample.number;
   look_.uplink = sample.uplink;
   if (++look_.came < kSamplesOfALook) return;
-  judge(std::max(look_.least_age - least - jitter_.most(), Time{}), now);
+  judge(std::max(look_.least_age - *least_.least() - jitter_.most(), Time{}), now);
   before_ = std::exchange(look_, {});
-}
-
-Time LinkPace::least_seen(Time age, Time now) noexcept {
-  if (now - window_ >= kWindow) {
-    least_before_ = std::exchange(least_, std::nullopt);
-    window_ = now;
-  }
-  least_ = std::min(least_.value_or(age), age);
-  return std::min(*least_, least_before_.value_or(*least_));
 }
 
 /// True if in the newest look samples were lost, or states on their way to the server.

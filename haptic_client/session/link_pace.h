@@ -4,12 +4,13 @@
 #include <optional>
 
 #include "common/jitter.h"
+#include "common/recent_least.h"
 #include "common/time.h"
 #include "protocol/messages.h"
 
 namespace palpate::client {
 
-/// What the link carries, from all that a session uses down to the least that makes a force.
+/// Names what the link carries, from all that a session uses down to the least that makes a force.
 enum class LinkLevel : std::uint8_t {
   kFull,    ///< each tick in a datagram of its own
   kPacked,  ///< two datagrams a step, which hold the ticks between
@@ -58,7 +59,6 @@ class LinkPace {
     std::uint64_t came = 0, newest = 0;  // how many samples, and the number of the newest
     protocol::UplinkCounts uplink{};     // of the newest
   };
-  Time least_seen(Time age, Time now) noexcept;
   void judge(Time delay, Time now) noexcept;
   bool loses() const noexcept;
   void change(LinkLevel level, Time now) noexcept;
@@ -70,9 +70,9 @@ class LinkPace {
   Time raised_{};                              // when the level last went up
   Time calm_ = kFirstCalm;                     // how long it must be before more is tried
   std::optional<Time> calm_since_, waits_since_;
-  int grew_ = 0;                              // looks in a row in which the delay did
-  std::optional<Time> least_, least_before_;  // age, in this window of time and in the one before
-  Time window_{}, delay_{};                   // delay: of the look before
+  int grew_ = 0;       // looks in a row in which the delay did
+  RecentLeast least_;  // age
+  Time delay_{};       // of the look before
   Look look_, before_;
   Jitter jitter_;
 

@@ -37,7 +37,7 @@ class NetLink {
   std::atomic<int> other_version{0};
   /// The `protocol::KeyMismatch` of the newest answer that was not of who has our key; -1: none came.
   std::atomic<int> key_mismatch{-1};
-  /// How much the link carries, for a watching thread.
+  /// Level of the link, for a watching thread.
   std::atomic<LinkLevel> level{LinkLevel::kPacked};
   /// `errno` of the newest datagram, if the system would not send it: there is no way to the server.
   std::atomic<int> unsendable{0};
