@@ -1,6 +1,7 @@
 #include "sim_server/contact/joint_contact.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace palpate::sim {
@@ -32,12 +33,20 @@ JointContact::JointContact(std::span<const ToolContact> tools, std::size_t verti
   were_.reserve(static_cast<std::size_t>(nodes));
   are_.reserve(static_cast<std::size_t>(nodes));
   loads_.reserve(static_cast<std::size_t>(nodes));
+  if (any_friction(tools))
+    forces_before_.reserve(static_cast<std::size_t>(nodes + sum_over(tools, &ToolContact::max_triangles)));
   displacement_.resize(3 * (nodes + static_cast<int>(tools.size())));
   node_forces_.resize(3 * nodes);
 }
 
 bool JointContact::has_solved(std::size_t tool) const noexcept {
-  return std::ranges::find(near_, tool) != near_.end();
+  return place_of(tool) >= 0;
+}
+
+/// The place of a tool among those that are solved for; -1: it has none.
+int JointContact::place_of(std::size_t tool) const noexcept {
+  const auto at = std::ranges::find(near_, tool);
+  return at == near_.end() ? -1 : static_cast<int>(at - near_.begin());
 }
 
 bool JointContact::advance(std::span<ToolContact> tools, std::span<const std::optional<PathPoint>> to,
@@ -102,9 +111,9 @@ bool JointContact::solve(std::span<ToolContact> tools, Tissue& tissue) {
       }
       set_loads(tools, tissue);
       for (const std::size_t t : near_) converged = converged && forces_[t].converged;
-    }
-    for (std::size_t t = 0; t < tools.size(); ++t) {
-      if (goes_[t]) tools[t].note(forces_[t], tissue.known_to(t));
+      for (std::size_t t = 0; t < tools.size(); ++t) {
+        if (goes_[t]) tools[t].note(forces_[t], solver_.feature_forces(), place_of(t), tissue.known_to(t));
+      }
     }
     if (!converged) return false;
     if (stopped() == before) return true;
@@ -116,17 +125,37 @@ bool JointContact::solve(std::span<ToolContact> tools, Tissue& tissue) {
 bool JointContact::solve_alone(std::size_t index, std::span<ToolContact> tools, Tissue& tissue) {
   near_.clear();
   forces_[index] = tools[index].solve_contact(tissue.touched_by(index));
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    if (goes_[t]) tools[t].note(forces_[t], tissue.known_to(t));
+  }
   return forces_[index].converged;
 }
 
-void JointContact::solve_patch(std::span<const ToolContact> tools) {
+void JointContact::solve_patch(std::span<ToolContact> tools) {
   const int m = patch_.nodes();
   auto u = displacement_.head(3 * (m + static_cast<int>(near_.size())));
-  for (int i = 0; i < m; ++i) u.segment<3>(3 * i) = are_[static_cast<std::size_t>(i)] - patch_.free[i];
-  for (std::size_t k = 0; k < near_.size(); ++k)
-    u.segment<3>(3 * (m + static_cast<int>(k))) = tools[near_[k]].tip_offset();
+  for (int i = 0; i < m; ++i) {
+    u.segment<3>(3 * i) = are_[static_cast<std::size_t>(i)] - patch_.free[i];
+    for (const std::size_t t : near_) {
+      const Vec3 ahead = tools[t].foreseen(vertices_[i]);
+      u.segment<3>(3 * i) += ahead;
+      if (!ahead.isZero(0)) break;
+    }
+  }
+  double least_radius = std::numeric_limits<double>::infinity(), uncertainty = 0;
+  forces_before_.clear();
+  for (int k = 0; k < static_cast<int>(near_.size()); ++k) {
+    ToolContact& tool = tools[near_[k]];
+    u.segment<3>(3 * (m + k)) = tool.tip_offset() + tool.foreseen_tip();
+    tool.predict(vertices_, patch_, u.head(3 * m), node_forces_.head(3 * m));
+    tool.append_forces(k, forces_before_);
+    least_radius = std::min(least_radius, tool.radius());
+    uncertainty = std::max(uncertainty, tool.uncertainty());
+  }
+  touching_.front().start.forces = forces_before_;
   std::array<ContactForce, kMaxTools> forces;
-  solver_.solve(patch_, touching_, u, std::span(forces).first(near_.size()));
+  solver_.solve(patch_, touching_, u, std::span(forces).first(near_.size()),
+                {.expected = uncertainty / least_radius});
   for (std::size_t k = 0; k < near_.size(); ++k) forces_[near_[k]] = forces[k];
 }
 
@@ -219,8 +248,8 @@ int JointContact::node_of(int vertex, const ToolContact& tool, const ToolTissue&
 void JointContact::take_compliance(const Tissue& tissue) {
   patch_.compliance.shape(3 * patch_.nodes(), 3 * patch_.nodes());
   patch_.source = tissue.traits.columns;
-  if (patch_.source == nullptr) return tissue.model->compliance(vertices_, patch_);
   patch_.vertices = vertices_;
+  if (patch_.source == nullptr) return tissue.model->compliance(vertices_, patch_);
   patch_.filled.assign(vertices_.size(), 0);
   patch_.source->begin(patch_);
 }
@@ -240,9 +269,8 @@ void JointContact::set_loads(std::span<ToolContact> tools, Tissue& tissue) {
   tissue.apply_all_loads();
 }
 
-void JointContact::differentiate(std::size_t index, ToolContact& tool, ToolTissue tissue) noexcept {
-  const auto at = std::ranges::find(near_, index);
-  tool.set_tangent(solver_.tangent(patch_, static_cast<int>(at - near_.begin())), tissue);
+void JointContact::differentiate(std::size_t index, ToolContact& tool, const ToolTissue& tissue) noexcept {
+  if (tool.force().contacts > 0) tool.differentiate(solver_, patch_, place_of(index), vertices_, tissue);
 }
 
 }  // namespace palpate::sim

@@ -29,7 +29,7 @@ class JointContact {
   bool has_solved(std::size_t tool) const noexcept;
   /// Sets the tangent of a tool, of the last `solve`, with the loads of the others held. Before a tool is
   /// solved for alone.
-  void differentiate(std::size_t index, ToolContact& tool, ToolTissue tissue) noexcept;
+  void differentiate(std::size_t index, ToolContact& tool, const ToolTissue& tissue) noexcept;
   /// Its solution is of a step before.
   void forget() noexcept { near_.clear(); }
 
@@ -44,7 +44,8 @@ class JointContact {
   int node_of(int vertex, const ToolContact& tool, const ToolTissue& tissue);
   void take_compliance(const Tissue& tissue);
   bool solve_alone(std::size_t index, std::span<ToolContact> tools, Tissue& tissue);
-  void solve_patch(std::span<const ToolContact> tools);
+  int place_of(std::size_t tool) const noexcept;
+  void solve_patch(std::span<ToolContact> tools);
   void set_loads(std::span<ToolContact> tools, Tissue& tissue);
 
   std::array<bool, kMaxTools> goes_{};            // which tools are on their way
@@ -58,6 +59,7 @@ class JointContact {
   std::vector<Vec3> were_, are_;                // patch nodes when the increment began, and now, m
   std::span<const Vec3> base_;                  // that, or the tissue's own free shape
   std::vector<VertexLoad> loads_;
+  std::vector<FeatureForce> forces_before_;  // of all tools, in the increment before
   Eigen::VectorXd displacement_, node_forces_;
 };
 

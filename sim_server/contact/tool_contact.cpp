@@ -56,7 +56,7 @@ ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, c
   patch_.reserve(finder_.max_nodes(), finder_.max_triangles());
   filled_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   displacement_.resize(3 * (finder_.max_nodes() + 1));
-  predicted_loads_.resize(3 * finder_.max_nodes());
+  predicted_.resize(3 * finder_.max_nodes());
   predictor_.changes.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   stored_predictor_.changes.reserve(static_cast<std::size_t>(finder_.max_nodes()));
   stored_loads_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
@@ -192,10 +192,11 @@ bool ToolContact::has_stopped(const ToolTissue& tissue) const {
   return way_.stopped || way_.iterations >= most || (way_.pressed > kMaxPress && !anywhere);
 }
 
-void ToolContact::note(const ContactForce& contact, ToolTissue tissue) {
+void ToolContact::note(const ContactForce& contact, std::span<const FeatureForce> features, int index,
+                       ToolTissue tissue) {
   const bool touched = way_.pressed > 0 || way_.touched;
   way_.iterations += contact.iterations;
-  note_trend(contact, tissue);
+  note_trend(contact, features, index, tissue);
   if (contact.contacts > 0) way_.pressed += way_.length;
   if (contact.contacts == 0 && touched && recover_from_inside(tissue)) way_.stopped = true;
 }
@@ -312,10 +313,16 @@ const ContactPatch& ToolContact::gather(std::span<const Vec3> positions,
 
 void ToolContact::differentiate(ToolTissue tissue) noexcept {
   if (now_.force.contacts == 0) return;
-  set_tangent(holds() ? now_.grasp_tangent : solver_.tangent(patch_), tissue);
-  solver_.for_load_changes([&](int node, const Mat3& change) {
-    if (!holds() && tissue.traits().constant_compliance)
-      predictor_.changes.push_back({filled_[node], change});
+  if (holds()) return set_tangent(now_.grasp_tangent, tissue);
+  differentiate(solver_, patch_, 0, filled_, tissue);
+}
+
+void ToolContact::differentiate(ContactSolver& solver, const ContactPatch& patch, int index,
+                                std::span<const int> vertices, const ToolTissue& tissue) noexcept {
+  set_tangent(solver.tangent(patch, index), tissue);
+  if (!tissue.traits().constant_compliance) return;
+  solver.for_load_changes([&](int node, const Mat3& change) {
+    predictor_.changes.push_back({vertices[static_cast<std::size_t>(node)], change});
   });
 }
 
@@ -438,7 +445,8 @@ void ToolContact::start_increment(bool first, const ToolTissue& tissue) {
   increment_from_ = surface_was_;
 }
 
-void ToolContact::note_trend(const ContactForce& contact, const ToolTissue& tissue) noexcept {
+void ToolContact::note_trend(const ContactForce& contact, std::span<const FeatureForce> features, int index,
+                             const ToolTissue& tissue) noexcept {
   if (!has_friction() || way_.again) return;
   trend_.travel.surface.clear();
   trend_.forces.clear();
@@ -455,8 +463,9 @@ void ToolContact::note_trend(const ContactForce& contact, const ToolTissue& tiss
   }
   for (const int vertex : finder_.vertices())
     trend_.travel.surface.push_back({vertex, tissue.positions()[vertex] - increment_from_[vertex]});
-  const auto forces = solver_.feature_forces();
-  trend_.forces.assign(forces.begin(), forces.end());
+  for (const FeatureForce& feature : features) {
+    if (feature.tool == index) trend_.forces.push_back(feature);
+  }
 }
 
 /// Returns how far the tool goes on in this increment in the direction of an increment before, of that way.
@@ -494,19 +503,33 @@ Vec3 ToolContact::surface_lead(int vertex, double lead) const noexcept {
   return moved == before_.surface.end() ? Vec3(Vec3::Zero()) : Vec3(lead * moved->by);
 }
 
-/// Adds to the displacement to look from what the surface did in the increment before, by as much as the tool
-/// goes on in its direction. Returns how far things may be from there, of the tool radius.
-double ToolContact::follow_trend(Eigen::Ref<Eigen::VectorXd> u) noexcept {
-  const Travel& travel = trend_.travel;
-  if (travel.surface.empty() || way_.again || travel.way.isZero(0)) return 1;
+bool ToolContact::follows_trend() const noexcept {
+  return !trend_.travel.surface.empty() && !way_.again && !trend_.travel.way.isZero(0);
+}
+
+Vec3 ToolContact::foreseen(int vertex) const noexcept {
+  if (!follows_trend()) return Vec3::Zero();
+  const auto moved = std::ranges::find(trend_.travel.surface, vertex, &Travel::Moved::vertex);
+  return moved == trend_.travel.surface.end() ? Vec3(Vec3::Zero())
+                                              : Vec3(share_of(trend_.travel) * moved->by);
+}
+
+Vec3 ToolContact::foreseen_tip() const noexcept {
+  return follows_trend() ? Vec3(share_of(trend_.travel) * trend_.travel.offset) : Vec3(Vec3::Zero());
+}
+
+double ToolContact::uncertainty() const noexcept {
+  if (!follows_trend()) return tool_.radius;
   const Vec3 way = now_.place.p_W + offset_was_ - tip_was_.p_W;
-  const double share = share_of(travel);
-  for (const Travel::Moved& moved : travel.surface) {
-    const auto at = std::ranges::find(filled_, moved.vertex);
-    if (at != filled_.end()) u.segment<3>(3 * (at - filled_.begin())) += share * moved.by;
+  const double share = share_of(trend_.travel);
+  return kForeseen * ((way - share * trend_.travel.way).norm() + way_.length * tool_.radius);
+}
+
+void ToolContact::append_forces(int index, std::vector<FeatureForce>& forces) const {
+  for (FeatureForce feature : trend_.forces) {
+    feature.tool = index;
+    forces.push_back(feature);
   }
-  u.tail<3>() += share * travel.offset;
-  return kForeseen * (way - share * travel.way).norm() / tool_.radius + kForeseen * way_.length;
 }
 
 /// Takes the compliance of the vertices in `filled_`: column by column where that is possible, as most are
@@ -537,9 +560,9 @@ ContactForce ToolContact::solve_contact(ToolTissue tissue) {
   const int m = patch_.nodes();
   auto u = displacement_.head(3 * (m + 1));
   for (int i = 0; i < m; ++i) u.segment<3>(3 * i) = tissue.positions()[vertices[i]] - patch_.free[i];
-  u.tail<3>() = now_.tip_offset;
-  const double expected = follow_trend(u);
-  predict(u);
+  for (int i = 0; i < m && follows_trend(); ++i) u.segment<3>(3 * i) += foreseen(vertices[i]);
+  u.tail<3>() = now_.tip_offset + foreseen_tip();
+  predict(filled_, patch_, u.head(3 * m), predicted_.head(3 * m));
   nodes_were_.clear();
   const double lead = slip_lead();
   const ToolPose start = slip_start(lead);
@@ -549,7 +572,7 @@ ContactForce ToolContact::solve_contact(ToolTissue tissue) {
   }
   const ContactForce contact =
       solver_.solve(patch_, tool_, now_.place, u, {nodes_were_, start.p_W, start.q_W, trend_.forces},
-                    {.expected = expected});
+                    {.expected = uncertainty() / tool_.radius});
   now_.tip_offset = u.tail<3>();
   tissue.drop_loads();
   const auto forces = solver_.node_forces();
@@ -560,24 +583,22 @@ ContactForce ToolContact::solve_contact(ToolTissue tissue) {
   return contact;
 }
 
-/// Adds to the displacement to look from what the way from where the tool was differentiated does, to first
-/// order.
-void ToolContact::predict(Eigen::Ref<Eigen::VectorXd> u) noexcept {
+void ToolContact::predict(std::span<const int> vertices, ContactPatch& patch, Eigen::Ref<Eigen::VectorXd> u,
+                          Eigen::Ref<Eigen::VectorXd> work) noexcept {
   const Vec3 motion = now_.place.p_W - predictor_.from;
   if (motion.isZero(0) || motion.norm() > kIncrement * tool_.radius) return predictor_.changes.clear();
-  const Eigen::Index size = 3 * patch_.nodes();
-  auto moved = predicted_loads_.head(size);
-  moved.setZero();
+  const Eigen::Index size = u.size();
+  work.setZero();
   for (const Predictor::LoadChange& change : predictor_.changes) {
-    const auto at = std::ranges::find(filled_, change.vertex);
-    if (at == filled_.end()) continue;
-    const int node = static_cast<int>(at - filled_.begin());
-    patch_.require(node);
-    moved.noalias() += patch_.compliance.block(0, 3 * node, size, 3) * (change.per_motion * motion);
+    const auto at = std::ranges::find(vertices, change.vertex);
+    if (at == vertices.end()) continue;
+    const int node = static_cast<int>(at - vertices.begin());
+    patch.require(node);
+    work.noalias() += patch.compliance.block(0, 3 * node, size, 3) * (change.per_motion * motion);
   }
   predictor_.changes.clear();
   // A surface that would go much farther than the tool is about to snap to a place that nothing predicts.
-  if (moved.cwiseAbs().maxCoeff() <= 2 * motion.norm()) u.head(size) += moved;
+  if (size > 0 && work.cwiseAbs().maxCoeff() <= 2 * motion.norm()) u += work;
 }
 
 void ToolContact::release(ToolTissue tissue) {

@@ -98,9 +98,14 @@ class ToolContact {
   ContactForce solve_contact(ToolTissue tissue);
   /// Takes over where the tip stands by a contact that was solved elsewhere, from the place, m.
   void set_tip_offset(const Vec3& offset) noexcept { now_.tip_offset = offset; }
-  /// Notes the contact of an increment, whose loads are on the tissue. Where the tissue has closed over the
-  /// tool, it stops, and stands before the surface without a load.
-  void note(const ContactForce& contact, ToolTissue tissue);
+  /// Notes the contact of an increment, whose loads are on the tissue, with the forces of its features, of
+  /// which those of `index` are its own. Where the tissue has closed over the tool, it stops, and stands
+  /// before the surface without a load.
+  void note(const ContactForce& contact, std::span<const FeatureForce> features, int index,
+            ToolTissue tissue);
+  void note(const ContactForce& contact, ToolTissue tissue) {
+    note(contact, solver_.feature_forces(), 0, tissue);
+  }
   /// True if it goes no further in this step.
   bool has_stopped(const ToolTissue& tissue) const;
   /// Ends the way with this contact.
@@ -131,8 +136,9 @@ class ToolContact {
   void separate() noexcept;
   /// Adds the tangent to `force`. Of the last place where contact was solved: before another is asked for.
   void differentiate(ToolTissue tissue) noexcept;
-  /// Sets the tangent of `force` to one that was found elsewhere, N/m.
-  void set_tangent(const Mat3& tangent, const ToolTissue& tissue) noexcept;
+  /// Adds that of tool `index` of a patch of these vertices, whose contact was solved elsewhere.
+  void differentiate(ContactSolver& solver, const ContactPatch& patch, int index,
+                     std::span<const int> vertices, const ToolTissue& tissue) noexcept;
   /// Sets how long (s) a tool holds its new place in tangents; 0: to the end of the step.
   void predict_tangent(double seconds) noexcept { tangent_time_ = seconds; }
   /// Says that `force` is not settled.
@@ -167,6 +173,18 @@ class ToolContact {
   ToolPose slip_start(double lead) const noexcept;
   /// Returns how far a surface vertex is ahead of where it was then, m; 0 where that is not known.
   Vec3 surface_lead(int vertex, double lead) const noexcept;
+  /// Returns how far a surface vertex, or the tip, goes in the increment in hand if things go on as in the
+  /// one before, m; 0 where nothing is known, as without friction.
+  Vec3 foreseen(int vertex) const noexcept;
+  Vec3 foreseen_tip() const noexcept;
+  /// Returns how far things may be from there, m.
+  double uncertainty() const noexcept;
+  /// Adds to the displacement `u` (3m, m) of a patch of these vertices what the way from where the tool was
+  /// differentiated does, to first order. `work` (3m) is overwritten.
+  void predict(std::span<const int> vertices, ContactPatch& patch, Eigen::Ref<Eigen::VectorXd> u,
+               Eigen::Ref<Eigen::VectorXd> work) noexcept;
+  /// Appends the forces of its features in the increment before, as those of tool `index`.
+  void append_forces(int index, std::vector<FeatureForce>& forces) const;
   /// Returns where a surface vertex was then; without friction, of those at `now`.
   const Vec3& increment_start(int vertex, std::span<const Vec3> now) const {
     return increment_from_.empty() ? now[vertex] : increment_from_[vertex];
@@ -201,8 +219,10 @@ class ToolContact {
   void place_outside(const ToolPose& pose, ToolTissue tissue);
   void store_side(const ToolTissue& tissue) noexcept;
   bool recover_from_inside(ToolTissue tissue);
-  void note_trend(const ContactForce& contact, const ToolTissue& tissue) noexcept;
-  double follow_trend(Eigen::Ref<Eigen::VectorXd> u) noexcept;
+  void note_trend(const ContactForce& contact, std::span<const FeatureForce> features, int index,
+                  const ToolTissue& tissue) noexcept;
+  bool follows_trend() const noexcept;
+  void set_tangent(const Mat3& tangent, const ToolTissue& tissue) noexcept;
   void start_increment(bool first, const ToolTissue& tissue);
   double share_of(const Travel& travel) const noexcept;
   static bool sticks(const Travel& travel) noexcept;
@@ -213,7 +233,6 @@ class ToolContact {
   double increments_to(const ToolPose& pose) const noexcept;
   Vec3 path_offset(double fraction, const Vec3& motion) const noexcept;
   void take_compliance(const ToolTissue& tissue);
-  void predict(Eigen::Ref<Eigen::VectorXd> u) noexcept;
   void release(ToolTissue tissue);
   void set_force(const ContactForce& contact, int iterations, ToolTissue tissue);
 
@@ -278,7 +297,7 @@ class ToolContact {
     Vec3 from = Vec3::Zero();         // m
   };
   Predictor predictor_, stored_predictor_;
-  Eigen::VectorXd predicted_loads_;  // of the patch nodes
+  Eigen::VectorXd predicted_;  // displacement of the patch nodes, m
 };
 
 }  // namespace palpate::sim
