@@ -40,7 +40,7 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
   const std::uint64_t received = stats_.received;
   protocol::Datagram datagram;
   const protocol::Message* message = nullptr;
-  const Verdict verdict = from == server_ ? protocol::decode(bytes, datagram) : Verdict::kNotOurs;
+  const Verdict verdict = from == server_ ? protocol::decode_fields(bytes, datagram) : Verdict::kNotOurs;
   if (verdict == Verdict::kAccepted) {
     message = session_.receive(datagram, t, stats_);
   } else {
