@@ -296,7 +296,9 @@ TEST_CASE("viewer: what a client tells reaches a page once") {
   client.law = SeenClient::Name{"linear_position"};
   client.law_names = {SeenClient::Name{"constant"}, SeenClient::Name{"linear_position"}};
   client.errors_percent = {12.5F, std::nanf("")};
-  client.total_percent = 50.25F;
+  client.parts_percent = {50.25F, 0.5F, std::nanf("")};
+  client.part_names = {SeenClient::Name{}, SeenClient::Name{"fades"}, SeenClient::Name{"limits"}};
+  client.age_ms = 20;
   client.states = 1;
   client.state_names[0] = SeenClient::Name{"clutched"};
   client.interventions = 1;
@@ -319,6 +321,10 @@ TEST_CASE("viewer: what a client tells reaches a page once") {
   CHECK(published["errors_percent"][0] == 12.5);
   CHECK(published["errors_percent"][1].is_null());
   CHECK(published["total_percent"] == 50.25);
+  CHECK(published["parts_percent"].size() == 2);
+  CHECK(published["parts_percent"]["fades"] == 0.5);
+  CHECK(published["parts_percent"]["limits"].is_null());
+  CHECK_THAT(published["beside"].get<std::string>(), Catch::Contains("20 ms old: late in a damper"));
   CHECK(published["interventions"]["clamped"] == 3);
   CHECK(published["states"] == std::vector<std::string>{"clutched"});
   session.maker->update(session.time);
