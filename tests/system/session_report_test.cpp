@@ -142,6 +142,7 @@ TEST_CASE("run: pages that were requested and never come are told, with the caus
   for (const char* part : {"datagrams of 937 bytes do not get through", "IP fragments",
                            "ip link set dev IF mtu 1280", "--method two_tangents", "  narrow  "})
     CHECK_THAT(said, Catch::Contains(part));
+  CHECK(said.find("937 bytes") != said.rfind("937 bytes"));  // while it runs, and in the report
   CHECK(read_json(file)["tools"][0]["link"]["drops_large"] == true);
 }
 

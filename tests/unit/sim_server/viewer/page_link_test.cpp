@@ -330,3 +330,26 @@ TEST_CASE("viewer: what a client tells reaches a page once") {
   session.maker->update(session.time);
   CHECK(session.take_all() == 0);
 }
+
+TEST_CASE("viewer: a page learns how many samples did not settle, and of strain in the report's words") {
+  Session session;
+  session.link.greet(false);
+  session.step(1);
+  session.take_all();
+  CHECK(session.last_text()["state"]["strain"] == "");
+  CHECK(session.last_text()["state"]["tools"][0]["flagged_samples"] == 0);
+  StrainRange strain(ElasticLaw::kLinear);
+  strain.add(0.45), strain.add(0.1);
+  for (int buffer = 0; buffer < 3; ++buffer) {  // pictures take turns
+    session.feed->pictures.back().strain = strain;
+    session.feed->pictures.back().tools[0].flagged_samples = 7;
+    session.step(2 + static_cast<std::uint64_t>(buffer), 0.1F * static_cast<float>(buffer));
+  }
+  session.take_all();
+  const auto state = session.last_text()["state"];
+  CHECK(state["tools"][0]["flagged_samples"] == 7);
+  CHECK(state["strain"] == strain.to_text());
+  CHECK_THAT(state["strain"].get<std::string>(), Catch::Contains("strain up to 45 %") &&
+                                                     Catch::Contains("1 of 2") &&
+                                                     Catch::Contains("neo_hookean"));
+}
