@@ -20,7 +20,7 @@ class BackgroundJob {
   template <class Make>
   void start(const char* name, Make make) {
     work_ = std::async(std::launch::async, [name, make = std::move(make)]() mutable {
-              make_background(name);
+              take_role(ThreadRole::kPage, name);
               std::shared_ptr<Result> result;
               in_one_thread([&] { result = std::make_shared<Result>(make()); });
               return result;

@@ -6,12 +6,13 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "common/perception.h"
+
 namespace palpate {
 namespace {
 
-constexpr double kRoughHz = 30;   // of the high-pass: SCORES.md, rough_percent
-constexpr double kNoticed = 0.1;  // of the force: about the smallest difference a hand can tell
-constexpr double kFloor = 0.1;    // of the peak
+constexpr double kRoughHz = 30;                          // of the high-pass: SCORES.md, rough_percent
+constexpr double kFloor = 0.1;                           // of the peak
 constexpr Time kWindow = std::chrono::milliseconds(10);  // what a hand resolves at 100 Hz
 constexpr double kLeastWindowTicks = 2;                  // fewer have no mean
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -85,7 +86,7 @@ void ErrorTable::add(const Vec3& force, const ReferenceForce& reference) noexcep
   errors_.add(error);
   force_max_ = std::max(force_max_, size);
   peak_ = std::max(peak_, reference.norm);
-  exceed_ += error > kNoticed * std::max(reference.norm, kFloor * peak_) ? 1 : 0;
+  exceed_ += error > kNoticedForce * std::max(reference.norm, kFloor * peak_) ? 1 : 0;
   if (reference.norm == 0) return;
   ++contact_;
   reference_squared_ += reference.norm * reference.norm;

@@ -101,7 +101,7 @@ void PromptTeam::wait_for_work(std::uint32_t last) noexcept {
 }
 
 void PromptTeam::help() noexcept {
-  make_ordinary("palpate-help");
+  take_role(ThreadRole::kHelp);
   for (std::uint32_t last = 0;;) {
     wait_for_work(last);
     last = number_.load(std::memory_order_acquire);

@@ -17,32 +17,27 @@ std::string lock_memory() {
                      std::strerror(errno));
 }
 
-void name_thread(const char* name) {
-  pthread_setname_np(pthread_self(), name);
+std::string take_role(ThreadRole role, const char* name) {
+  const std::string refused = give_role(pthread_self(), role);
+  if (name != nullptr) pthread_setname_np(pthread_self(), name);
+  if (row_of(role).nice != 0) {
+    const int others = getpriority(PRIO_PROCESS, static_cast<id_t>(getpid()));  // the first thread, on Linux
+    setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), others + row_of(role).nice);  // this thread alone
+  }
+  return refused;
 }
 
-void make_ordinary(const char* name) {
-  name_thread(name);
-  const sched_param param{};
-  pthread_setschedparam(pthread_self(), SCHED_OTHER, &param);
-}
-
-void make_background(const char* name) {
-  constexpr int kNice = 10;  // behind any thread that steps or renders
-  make_ordinary(name);
-  setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice);  // of this thread alone, on Linux
-}
-
-std::string make_realtime(pthread_t thread, const char* name, int priority) {
-  pthread_setname_np(thread, name);
+std::string give_role(pthread_t thread, ThreadRole role) {
+  const ThreadRow& row = row_of(role);
+  pthread_setname_np(thread, row.name);
   sched_param param{};
-  param.sched_priority = priority;
-  const int refused = pthread_setschedparam(thread, SCHED_FIFO, &param);
+  param.sched_priority = row.realtime;
+  const int refused = pthread_setschedparam(thread, row.realtime > 0 ? SCHED_FIFO : SCHED_OTHER, &param);
   if (refused == 0) return {};
   return fmt::format(
       "no real-time priority for the {} thread ({}): raise `ulimit -r` (rtprio in "
       "/etc/security/limits.conf)",
-      name, std::strerror(refused));
+      row.name, std::strerror(refused));
 }
 
 }  // namespace palpate

@@ -1,31 +1,46 @@
 #pragma once
+#include <array>
 #include <pthread.h>
 #include <string>
 
 namespace palpate {
 
-/// Real-time priorities (SCHED_FIFO) of both programs: a haptic tick waits for nobody; a force that waits
-/// behind a step of the simulation is older than it need be.
-inline constexpr int kHapticPriority = 80, kNetworkPriority = 50, kSimulationPriority = 40;
+/// What a thread is for; the order is that of priority, a thread waits for none of those below it.
+enum class ThreadRole {
+  kHaptic,      ///< a tick waits for nobody
+  kNetwork,     ///< a force that waits behind a step of the simulation is older than it need be
+  kSimulation,  ///< steps
+  kHelp,        ///< shares in the work of another thread
+  kRecording,   ///< writes a capture
+  kPage,        ///< the live page, and work in the background: they may be late, forces may not
+};
+
+/// Priorities of a role.
+struct ThreadRow {
+  const char* name;  ///< as `top -H` shows it, at most 15 characters
+  int realtime;      ///< SCHED_FIFO, 1..99; 0: an ordinary thread
+  int nice;          ///< of an ordinary thread: how much it gives way to others of the program
+};
+/// A row for each role, in their order.
+inline constexpr std::array<ThreadRow, 6> kThreads{{{"palpate-haptic", 80, 0},
+                                                    {"palpate-net", 50, 0},
+                                                    {"palpate-sim", 40, 0},
+                                                    {"palpate-help", 0, 0},
+                                                    {"palpate-record", 0, 0},
+                                                    {"palpate-view", 0, 10}}};
+constexpr const ThreadRow& row_of(ThreadRole role) {
+  return kThreads[static_cast<std::size_t>(role)];
+}
 
 /// Locks the program's memory (mlockall) so that no page fault stalls a loop. Returns an empty text, or one
 /// sentence that says what the system refused and what to change. Call once, after set-up.
 std::string lock_memory();
 
-/// Gives the calling thread a name (at most 15 characters, shown by `top -H`).
-void name_thread(const char* name);
-
-/// Gives a thread real-time priority (SCHED_FIFO `priority`, 1..99) and the name `name` (at most 15
-/// characters, shown by `top -H`). Returns an empty text, or one sentence that says what was refused and what
+/// Gives the calling thread, which may have the priority of the thread that started it, that of its role, and
+/// its name; `name`: another one. Returns an empty text, or one sentence that says what was refused and what
 /// to change.
-std::string make_realtime(pthread_t thread, const char* name, int priority);
-
-/// Gives the calling thread, which the thread that started it may have given real-time priority, the ordinary
-/// one, and a name as above.
-void make_ordinary(const char* name);
-
-/// Lets the calling thread, which the thread that started it may have given real-time priority, work beside
-/// all others: no real time, and less of the processor where that is scarce. With a name as above.
-void make_background(const char* name);
+std::string take_role(ThreadRole role, const char* name = nullptr);
+/// Gives another thread, of a role with real-time priority, the same.
+std::string give_role(pthread_t thread, ThreadRole role);
 
 }  // namespace palpate

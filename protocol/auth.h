@@ -27,8 +27,8 @@ Key direction_key(const Key& shared, Direction direction, const Nonce& client, c
 /// size with it. Without a key: nothing, and `size`. A microsecond a kilobyte; no allocation.
 std::size_t seal(std::span<std::byte> out, std::size_t size, const Key& key) noexcept;
 
-/// True if the tag of a datagram that `decode` accepted is that of `key`, compared in constant time; without
-/// a key always true.
+/// True if the tag of a datagram that `decode_fields` accepted is that of `key`, compared in constant time;
+/// without a key always true.
 bool authentic(std::span<const std::byte> datagram, const Key& key) noexcept;
 /// True if a datagram says that it has a tag, of whatever key.
 bool is_tagged(std::span<const std::byte> datagram) noexcept;

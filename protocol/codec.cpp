@@ -124,14 +124,6 @@ Verdict read_payload(MessageType type, std::span<const std::byte> payload, Messa
   return Verdict::kType;
 }
 
-/// True unless it says that earlier ticks follow, and what follows is none.
-bool are_earlier_ticks_valid(const Datagram& datagram) noexcept {
-  const auto* const state = std::get_if<ToolState>(&datagram.message);
-  if (state == nullptr || (state->flags & ToolState::kHasEarlierTicks) == 0) return true;
-  std::array<ToolState, kMostEarlierTicks> ticks;
-  return read_earlier_ticks(*state, behind_fields(datagram), ticks).has_value();
-}
-
 }  // namespace
 
 bool valid(const ModalLoads& m) noexcept {
@@ -201,7 +193,7 @@ std::optional<OtherVersion> other_version(std::span<const std::byte> in) noexcep
   return other;
 }
 
-Verdict decode(std::span<const std::byte> in, Datagram& out) noexcept {
+Verdict decode_fields(std::span<const std::byte> in, Datagram& out) noexcept {
   if (in.size() < kHeaderBytes) return Verdict::kTooShort;
   Reader reader(in);
   std::array<std::uint8_t, 4> magic{};
@@ -220,8 +212,21 @@ Verdict decode(std::span<const std::byte> in, Datagram& out) noexcept {
   Message message;
   const Verdict verdict = read_payload(type, in.subspan(kHeaderBytes, payload), message);
   if (verdict != Verdict::kAccepted) return verdict;
-  const Datagram read{header, message, in};
-  if (!are_earlier_ticks_valid(read)) return Verdict::kValue;
+  out = {header, message, in};
+  return Verdict::kAccepted;
+}
+
+Verdict decode_earlier(const Datagram& datagram) noexcept {
+  const auto* const state = std::get_if<ToolState>(&datagram.message);
+  if (state == nullptr || (state->flags & ToolState::kHasEarlierTicks) == 0) return Verdict::kAccepted;
+  std::array<ToolState, kMostEarlierTicks> ticks;
+  return read_earlier_ticks(*state, behind_fields(datagram), ticks) ? Verdict::kAccepted : Verdict::kValue;
+}
+
+Verdict decode(std::span<const std::byte> in, Datagram& out) noexcept {
+  Datagram read;
+  if (const Verdict verdict = decode_fields(in, read); verdict != Verdict::kAccepted) return verdict;
+  if (const Verdict verdict = decode_earlier(read); verdict != Verdict::kAccepted) return verdict;
   out = read;
   return Verdict::kAccepted;
 }

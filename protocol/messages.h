@@ -373,8 +373,9 @@ struct SurfacePage {
 struct Telemetry {
   static constexpr MessageType kType = MessageType::kTelemetry;
   /// A full message has 218 + 4 x 24 x (1 + 8) bytes and fits into `kMaxDatagram` with header and tag.
-  static constexpr std::size_t kMostTicks = 24, kMostLaws = 8, kNameBytes = 32;
-  static constexpr Range kTicks{0, kMostTicks}, kLaws{0, kMostLaws}, kColumn{0, kMostLaws};
+  static constexpr std::size_t kMostTicks = 24, kMostLaws = 8, kMostParts = 8, kNameBytes = 32;
+  static constexpr std::size_t kLastColumn = 15;  ///< of `kMostLaws` and `kMostParts`
+  static constexpr Range kTicks{0, kMostTicks}, kLaws{0, kMostLaws}, kColumn{0, kLastColumn};
   /// Bits of `flags`.
   enum Flag : std::uint16_t {
     kHasMotors = 1,
@@ -410,7 +411,8 @@ struct Telemetry {
   Name rendered_law = {};  ///< the rendered law; behind a colon, its substitute
   /// The law of column `named`, and its mean error so far, %, below 0: not known. Behind all laws, without a
   /// name, stands the force on the hand: at most this is its mean error, by mesh, time step, extrapolation
-  /// and safety chain together. Another one in each message.
+  /// and safety chain together; behind that its measured parts and the worst tick, by their names in the
+  /// client's report. Another one in each message.
   std::uint8_t named = 0;
   Name name = {};
   float error_percent = -1;

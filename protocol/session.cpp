@@ -211,7 +211,7 @@ ServerSessions::Outcome ServerSessions::admit(const Hello& hello, const Key& sha
                  .keys = {direction_key(shared, Direction::kToServer, hello.nonce, fresh.nonce),
                           direction_key(shared, Direction::kToClient, hello.nonce, fresh.nonce)}});
   }
-  member->endpoint = from;
+  member->endpoint = member->reached = from;  // the cookie was sent there
   return {.answer = {{Header{member->session, ++member->sent},
                       Welcome{hello.nonce, hello.attempt, member->server_nonce, member->tool, rate_hz_,
                               radii_[member->tool]}}}};
@@ -231,7 +231,19 @@ std::uint64_t ServerSessions::number_like(std::uint64_t session) const noexcept 
   return session;
 }
 
+/// Another endpoint only with a key.
+void ServerSessions::Member::heard_from(const Endpoint& from, std::uint64_t newest_sample) noexcept {
+  if (from != endpoint) {
+    endpoint = from;
+    probe = 0;
+  } else if (probe != 0 && newest_sample >= probe) {
+    reached = from;
+  }
+}
+
 std::size_t ServerSessions::write(Member& member, const Message& message, std::span<std::byte> out) noexcept {
+  if (const auto* sample = std::get_if<ForceSample>(&message); sample && member.probe == 0)
+    member.probe = sample->number;
   return write_sealed({member.session, ++member.sent}, message, member.keys.out, out);
 }
 
@@ -261,9 +273,13 @@ ServerSessions::Outcome ServerSessions::receive(const Datagram& datagram, const 
     stats.reject(Verdict::kTool);
     return {};
   }
+  if (const Verdict verdict = decode_earlier(datagram); verdict != Verdict::kAccepted) {
+    stats.reject(verdict);
+    return {};
+  }
   if (!found->window.accept(datagram.header.sequence, stats)) return {};
   if (telemetry != nullptr) return {.telemetry = telemetry};
-  if (found->window.in_order()) found->endpoint = from;  // another one only with a key
+  if (found->window.in_order()) found->heard_from(from, tool_state->newest_sample);
   const bool newer =
       found->ticks.accept(tool_state->tick, datagram.header.sequence, found->window.in_order(), stats);
   // A client that waits for its first tick says the same over and over.

@@ -35,9 +35,9 @@ class ClientSession {
   /// A Hello to send now, if one is due. Call often (every 50 ms will do), and after each datagram that came.
   std::optional<Hello> poll(Time now) noexcept;
 
-  /// A datagram that `decode` accepted came. Returns its message if that is a force sample of this session
-  /// and the newest so far, a page of the surface, or a pointer for it; everything else is taken care of
-  /// here. `stats` gets what was received, lost, doubled or rejected.
+  /// A datagram that `decode_fields` accepted came. Returns its message if that is a force sample of this
+  /// session and the newest so far, a page of the surface, or a pointer for it; everything else is taken care
+  /// of here. `stats` gets what was received, lost, doubled or rejected.
   const Message* receive(const Datagram& datagram, Time now, LinkStats& stats) noexcept;
 
   /// Header of the next datagram to send in this session.
@@ -107,12 +107,21 @@ class ServerSessions {
     std::uint64_t session = 0, sent = 0;
     std::uint8_t key = 0;  ///< the number of the one that it joined with; 0: none
     Nonce nonce{}, server_nonce{};
-    Endpoint endpoint{};
+    Endpoint endpoint{};      ///< where answers go
+    Endpoint reached{};       ///< that which last proved to receive what is sent there
+    std::uint64_t probe = 0;  ///< number of the first sample sent to `endpoint` since it became that; 0: none
     std::uint8_t tool = 0;
     Time last_heard{};  ///< a tool state, or its beginning
     SessionKeys keys{};
     ReplayWindow window{kMaxState};
     NewestOnly ticks{};
+
+    /// True if the client receives at `endpoint`, as far as is known: it said a cookie back that was sent
+    /// there, or used a sample that was sent there alone. Until then nothing large goes there: who relays a
+    /// state from a forged address cannot aim pages at it (as RFC 9000, section 8.2, validates a path).
+    bool is_reached() const noexcept { return endpoint == reached; }
+    /// A state came in order from `from`, and its tick had used sample `newest_sample`.
+    void heard_from(const Endpoint& from, std::uint64_t newest_sample) noexcept;
   };
   /// Outcome of a datagram: an answer to send back, a tool state newer than all before, or telemetry.
   struct Outcome {
@@ -138,7 +147,7 @@ class ServerSessions {
                  std::vector<Key> keys = {})
       : rate_hz_(rate_hz), radii_(std::move(tool_radii)), cookies_(secret), keys_(std::move(keys)) {}
 
-  /// A datagram that `decode` accepted came.
+  /// A datagram that `decode_fields` accepted came.
   Outcome receive(const Datagram& datagram, const Endpoint& from, Time now, const Fresh& fresh,
                   LinkStats& stats);
 

@@ -107,7 +107,7 @@ void palpate_session::connect() {
   {
     const SignalsBlocked blocked;
     net_thread_ = std::jthread([this] {
-      name_thread("palpate-net");
+      take_role(ThreadRole::kNetwork);
       try {
         link_.run();
       } catch (...) {  // nothing comes any more, so the force fades

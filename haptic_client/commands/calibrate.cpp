@@ -194,8 +194,7 @@ int calibrate(ClientConfig config, double mass) {
       run_loop(stop, *device, calibration, row.limits(config.device).min_period, progress,
                guardian.heartbeat(0));
     });
-    if (const auto refused = make_realtime(loop.native_handle(), "palpate-haptic", kHapticPriority);
-        !refused.empty())
+    if (const auto refused = give_role(loop.native_handle(), ThreadRole::kHaptic); !refused.empty())
       log::warning("{}", refused);
     if (const auto refused = lock_memory(); !refused.empty()) log::warning("{}", refused);
     interrupted = guide(progress, *device, config.device, mass);

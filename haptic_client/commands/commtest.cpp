@@ -78,8 +78,7 @@ TestedLink tested_link(const Json& tool, double seconds) {
               8e-6 * (link["bytes_up"].get<double>() + kHeaders * link["sent"].get<double>()) / seconds,
           .uplink_loss_percent = percent(up_lost, up_came + up_lost),
           .slow_percent = slow_percent(link["levels_s"]),
-          .surface_named = link["surfaces"].get<std::uint64_t>() > 0,
-          .pages = tool["force"]["surface_pages"].get<std::uint64_t>()};
+          .drops_large = link["drops_large"].get<bool>()};
 }
 
 void print_round_trip(const Json& trip) {
@@ -183,7 +182,7 @@ int test_device(const ClientConfig& config, const CommtestOptions& options) {
   fmt::print("testing {} at {:g} Hz for {:g} s, with zero force\n", config.device.name, rate_hz,
              options.seconds);
   std::fflush(stdout);
-  make_realtime(pthread_self(), "palpate-test", kHapticPriority);
+  take_role(ThreadRole::kHaptic);
   Histogram took_ns, between_ns;
   std::uint64_t ticks = 0, usable = 0, late = 0;
   Time before{};

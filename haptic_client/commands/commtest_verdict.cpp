@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 
 #include "common/ages.h"
+#include "common/perception.h"
 #include "common/text.h"
 #include "common/time.h"
 #include "haptic_client/extrapolation/extrapolators.h"
+#include "haptic_client/session/link_figures.h"
 
 namespace palpate::client {
 namespace {
@@ -35,8 +37,6 @@ constexpr double kDirect = 14220;  // N/m: what the true force at 500 Hz keeps s
 
 constexpr double kMostLoss = 5;   // %
 constexpr double kMostSlow = 10;  // % of the time
-// Rank, Shi, Mueller and Hirche: from when a delay of the force is noticed, ms.
-constexpr double kNoticedInDamper = 15, kNoticedInSpring = 36;
 
 void worsen(Verdict& verdict, Grade grade, std::string reason) {
   verdict.grade = std::max(verdict.grade, grade);
@@ -93,12 +93,7 @@ void judge_ages(const TestedLink& link, Verdict& verdict) {
 }
 
 void judge_losses(const TestedLink& link, Verdict& verdict) {
-  if (link.surface_named && link.pages == 0) {
-    worsen(verdict, Grade::kFail,
-           fmt::format("\"{}\" needs pages of the surface, and none came: datagrams of 937 bytes do not get "
-                       "through, so that a law without them stood in",
-                       link.law));
-  }
+  if (link.drops_large) worsen(verdict, Grade::kFail, large_datagrams_text());
   if (link.loss_percent > kMostLoss) {
     worsen(verdict, Grade::kWarn,
            fmt::format("{:.1f} % of the samples were lost (the laws bridge one, not many in a row)",

@@ -26,8 +26,7 @@ struct TestedLink {
   double sent_mbit_s = 0;             ///< with the headers of IP and UDP
   double uplink_loss_percent = 0;     ///< of datagrams to the server, as it counts them
   double slow_percent = 0;            ///< of the time, in which less travelled than a session has to tell
-  bool surface_named = false;         ///< by samples, for a law that requests it
-  std::uint64_t pages = 0;            ///< of the surface that came
+  bool drops_large = false;           ///< no page came of those requested (`LinkFigures::drops_large`)
 };
 
 enum class Grade { kPass, kWarn, kFail };

@@ -66,7 +66,8 @@ std::vector<std::string> machine_causes() {
                     governor));
   }
   rlimit limit{};
-  if (getrlimit(RLIMIT_RTPRIO, &limit) == 0 && limit.rlim_cur < kHapticPriority && geteuid() != 0)
+  if (getrlimit(RLIMIT_RTPRIO, &limit) == 0 &&
+      limit.rlim_cur < static_cast<rlim_t>(row_of(ThreadRole::kHaptic).realtime) && geteuid() != 0)
     causes.push_back("no real-time priority (rtprio): see haptic_client/session/REALTIME.md");
   if (getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY && geteuid() != 0)
     causes.push_back(

@@ -132,8 +132,10 @@ Json describe_capture(const CaptureSurvey& found, const CapturedRun& run, const 
           {"ticks", ticks},
           {"own_ticks", exact},
           {"missing_ticks", missing.ticks},
+          {"left_out_ticks", missing.left_out},
           {"missing_samples", missing.samples},
           {"missing_pages", missing.pages},
+          {"undated_pages", missing.undated},
           {"backward_ticks", missing.backwards},
           {"link_lost", run.lost()},
           {"link_reordered", run.reordered()},
@@ -159,6 +161,15 @@ void say_how_exact(const Json& capture, const CapturedRun& run, const std::strin
         "forces differ from those rendered there",
         file, count("missing_ticks"), count("missing_samples"), count("missing_pages"),
         count("backward_ticks"));
+  }
+  if (count("left_out_ticks") + count("undated_pages") > 0) {
+    log::warning(
+        "{}: {} of {} ticks are not in the capture, as a slow link carried about one a step (level sparse), "
+        "and "
+        "{} pages came when ticks did not tell which they had (levels lean and sparse): until the soft start "
+        "of "
+        "the next session, the forces differ from those rendered there",
+        file, count("left_out_ticks"), count("left_out_ticks") + count("ticks"), count("undated_pages"));
   }
 }
 

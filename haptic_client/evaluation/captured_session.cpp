@@ -1,6 +1,7 @@
 #include "haptic_client/evaluation/captured_session.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/error.h"
 #include "protocol/earlier_ticks.h"
@@ -62,7 +63,7 @@ void CapturedSession::fill() {
     for (const ToolState& state : ticks_of(datagram)) {
       const auto after =
           std::ranges::find_if(waiting_, [&](const Numbered& n) { return n.state.tick < state.tick; });
-      waiting_.insert(after, {place_, state});
+      waiting_.insert(after, {place_, datagram.header.sequence, state});
     }
   }
 }
@@ -76,12 +77,10 @@ bool CapturedSession::next(CapturedTick& out) {
       ++missing_.backwards;
       continue;
     }
-    if (newest_tick_ > 0 && tick.state.tick > newest_tick_ + 1)
-      missing_.ticks += tick.state.tick - newest_tick_ - 1;
-    newest_tick_ = tick.state.tick;
+    note_gap(tick);
     newest_t_ = t;
     out = {tick.state, {}, {}};
-    hand_over_pages(tick.state.pages_taken, out);
+    hand_over_pages(tick.state, out);
     if (tick.state.newest_sample == newest_sample_) return true;
     newest_sample_ = tick.state.newest_sample;
     const ForceSample* const sample = find_sample(newest_sample_, tick.place);
@@ -92,11 +91,27 @@ bool CapturedSession::next(CapturedTick& out) {
     }
     return true;
   }
+  if (!std::exchange(tells_pages_, true)) missing_.undated += pages_.size();
   return false;
 }
 
-/// Pages are taken in the order in which they came.
-void CapturedSession::hand_over_pages(std::uint64_t taken, CapturedTick& out) {
+/// Where two datagrams follow each other, the ticks between them never travelled.
+void CapturedSession::note_gap(const Numbered& tick) {
+  if (newest_tick_ > 0 && tick.state.tick > newest_tick_ + 1) {
+    const bool follows = tick.sequence == sequence_ || tick.sequence == sequence_ + 1;
+    (follows ? missing_.left_out : missing_.ticks) += tick.state.tick - newest_tick_ - 1;
+  }
+  newest_tick_ = tick.state.tick;
+  sequence_ = tick.sequence;
+}
+
+/// Pages are taken in the order in which they came. A tick that does not request the surface does not tell
+/// which it had; those are handed over to the next tick that does.
+void CapturedSession::hand_over_pages(const ToolState& state, CapturedTick& out) {
+  const bool tells = (state.flags & ToolState::kRequestsSurface) != 0;
+  const std::uint64_t taken = state.pages_taken;
+  if (tells && !tells_pages_ && taken > pages_taken_) missing_.undated += taken - pages_taken_;
+  tells_pages_ = tells || pages_taken_ == 0;
   for (; pages_taken_ < taken && !pages_.empty(); ++pages_taken_) {
     out.pages.push_back(pages_.front());
     pages_.pop_front();

@@ -37,14 +37,17 @@ class CapturedSession {
   /// `run`: index into `CaptureSurvey::runs` of the same file.
   CapturedSession(const std::filesystem::path& file, std::size_t run);
 
-  /// False at the end.
+  /// Returns false at the end; then `missing` is complete.
   bool next(CapturedTick& out);
 
   /// Data that are missing, so that the replay cannot be exact.
   struct Missing {
-    std::uint64_t ticks = 0;      ///< numbers skipped
-    std::uint64_t samples = 0;    ///< used by a tick, but not in the file
-    std::uint64_t pages = 0;      ///< of the surface that a tick knew, but not in the file
+    std::uint64_t ticks = 0;     ///< numbers skipped, with datagrams that are not in the file
+    std::uint64_t left_out = 0;  ///< numbers skipped that never travelled, as at the level sparse of a link
+    std::uint64_t samples = 0;   ///< used by a tick, but not in the file
+    std::uint64_t pages = 0;     ///< of the surface that a tick knew, but not in the file
+    std::uint64_t undated =
+        0;  ///< pages that came while ticks did not tell which they had: levels lean, sparse
     std::uint64_t backwards = 0;  ///< ticks left out: their time jumps out of the row, back or ahead
   };
   const Missing& missing() const { return missing_; }
@@ -52,7 +55,8 @@ class CapturedSession {
 
  private:
   struct Numbered {
-    std::uint64_t place;  // in the file
+    std::uint64_t place;     // in the file
+    std::uint64_t sequence;  // of its datagram
     protocol::ToolState state;
   };
   struct NumberedSample {
@@ -61,7 +65,8 @@ class CapturedSession {
   };
   void fill();
   bool out_of_row(Time t) const;
-  void hand_over_pages(std::uint64_t taken, CapturedTick& out);
+  void note_gap(const Numbered& tick);
+  void hand_over_pages(const protocol::ToolState& state, CapturedTick& out);
   const protocol::ForceSample* find_sample(std::uint64_t number, std::uint64_t place) const;
 
   protocol::CaptureReader reader_;
@@ -70,7 +75,8 @@ class CapturedSession {
   std::vector<Numbered> waiting_;            // by tick, newest first
   std::deque<NumberedSample> samples_;       // the last ones, oldest first
   std::deque<protocol::SurfacePage> pages_;  // that no tick has had, oldest first
-  std::uint64_t place_ = 0, newest_tick_ = 0, newest_sample_ = 0, pages_taken_ = 0;
+  std::uint64_t place_ = 0, newest_tick_ = 0, newest_sample_ = 0, pages_taken_ = 0, sequence_ = 0;
+  bool tells_pages_ = true;  // the tick before did
   Time newest_t_{-1};
   bool ended_ = false;
   Missing missing_;

@@ -200,20 +200,20 @@ Vec3 Pipeline::safe(const Vec3& f_W, const ToolState& tool, double dt) noexcept 
 }
 
 Watchdog::Ruling Pipeline::rule_by_age(const ToolState& tool, double dt) noexcept {
-  if (estimate_.newest().number == 0) return watchdog_.rule({}, {}, dt);
+  if (estimate_.newest().number == 0) return watchdog_.rule({}, false, dt);
   const Time age = Time{tool.t_ns} - estimate_.newest().t;
   if (!paused_) stats_.age_ns.add(age.count());
-  const Time now{tool.t_ns}, unsettled = now - unsettled_.since.value_or(now);
-  stats_.unsettled += unsettled > Watchdog::kUnsettled ? 1 : 0;
-  return watchdog_.rule(paused_ ? std::max(age, kOutage + Time{1}) : age, unsettled, dt);
+  const Watchdog::Ruling ruling =
+      watchdog_.rule(paused_ ? std::max(age, kOutage + Time{1}) : age, !estimate_.newest().settled, dt);
+  stats_.unsettled += ruling.unsettled ? 1 : 0;
+  return ruling;
 }
 
 std::optional<Doubt> Pipeline::doubt() const noexcept {
-  const Time now{rendered_.t_ns};
-  if (now - unsettled_.since.value_or(now) <= Watchdog::kUnsettled) return {};
+  if (!watchdog_.doubtful()) return {};
   for (const Doubt doubt : {Doubt::kFailed, Doubt::kRanAway, Doubt::kInsideOut, Doubt::kNotBalanced,
                             Doubt::kTools, Doubt::kOutsideReach}) {
-    if ((unsettled_.flags & ForceSample::kFailed << static_cast<unsigned>(doubt)) != 0) return doubt;
+    if ((doubts_ & ForceSample::kFailed << static_cast<unsigned>(doubt)) != 0) return doubt;
   }
   return Doubt::kContact;
 }
@@ -253,7 +253,7 @@ bool Pipeline::take(const ForceSample& arrived, const Vec3& p_W, Time now) noexc
   const bool flagged = (arrived.flags & ForceSample::kFlagged) != 0;
   stats_.flagged += flagged ? 1 : 0;
   stats_.strained += (arrived.flags & ForceSample::kStrained) != 0 ? 1 : 0;
-  unsettled_ = {flagged ? std::optional(unsettled_.since.value_or(now)) : std::nullopt, arrived.flags};
+  if (flagged) doubts_ = arrived.flags;
   if (estimate_.period() > Time::zero()) {
     stats_.sample_path_m += (arrived.p_W - before).norm();
     stats_.sample_path_s += to_seconds(estimate_.period());

@@ -101,7 +101,7 @@ class Pipeline {
   /// Age of the newest sample at the last tick, ns; -1 before there is one. In a pause, of the newest that
   /// said so.
   std::int64_t age_ns() const noexcept;
-  /// Why the force fades though samples come: those of the last 100 ms are flagged. None: it does not.
+  /// Why the force fades though samples come: too many are flagged (`Watchdog::doubtful`). None: it does not.
   std::optional<Doubt> doubt() const noexcept;
   const Limiter& limiter() const noexcept { return limiter_; }
   const Watchdog& watchdog() const noexcept { return watchdog_; }
@@ -138,11 +138,7 @@ class Pipeline {
   bool rearm_requested_ = false, paused_ = false;
   bool placed_ = false;        // the device has said once where it is
   std::int64_t heard_ns_ = 0;  // when a sample last came, of a pause, too
-  /// Flagged samples in a row, the newest among them.
-  struct Unsettled {
-    std::optional<Time> since = {};  // when the first came; none: the newest is settled
-    std::uint32_t flags = 0;         // of the newest
-  } unsettled_;
+  std::uint32_t doubts_ = 0;   // flags of the newest flagged sample
   PipelineStats stats_;
 };
 

@@ -262,14 +262,6 @@ void print_loop(const Json& loop) {
       number(period, "max"), number(tick, "p50"), number(tick, "p99"));
 }
 
-/// True if some forces were much older than most, in a session without real-time priority.
-bool is_late_for_want_of_priority(const Json& tool) {
-  constexpr double kMuch = 2;
-  const Json& age = tool["force"]["age_ms"];
-  return tool.contains("loop") && !tool["loop"]["real_time"].get<bool>() &&
-         age["p99"].get<double>() > kMuch * age["p50"].get<double>();
-}
-
 void print_tool(const Json& tool) {
   const auto number = [](const Json& group, const char* key) { return group[key].get<double>(); };
   const Json &force = tool["force"], &motion = tool["motion"], &safety = tool["safety"],
@@ -278,11 +270,6 @@ void print_tool(const Json& tool) {
       "  force   {:.0f} samples, age {:.1f} ms (p50), {:.1f} (p99), {:.1f} (max); largest force {:.2f} N\n",
       number(force, "samples"), number(age, "p50"), number(age, "p99"), number(age, "max"),
       number(force, "max_newton"));
-  if (is_late_for_want_of_priority(tool))
-    fmt::print(
-        "          late, and the threads that carry it had no real-time priority: raise `ulimit -r` (rtprio "
-        "in "
-        "/etc/security/limits.conf)\n");
   if (const auto jumps = jumps_in(force, "unexplained_jump"))
     fmt::print("          {}\n", unexplained_text(*jumps));
   if (number(force, "wild") > 0) {
@@ -348,6 +335,7 @@ void print_levels(const Json& levels) {
 
 void print_link(const Json& link) {
   print_levels(link["levels_s"]);
+  if (link.value("drops_large", false)) fmt::print("  narrow  {}\n", large_datagrams_text());
   fmt::print("  link   ");
   const char* separator = " ";
   for (const auto& [name, count] : link.items()) {

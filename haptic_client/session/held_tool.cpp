@@ -65,12 +65,12 @@ HeldTool::~HeldTool() {
 bool HeldTool::connect(Time patience) {
   if (recorder_) {
     recording_thread_ = std::jthread([this](const std::stop_token& stop) {
-      name_thread("palpate-record");
+      take_role(ThreadRole::kRecording);
       recorder_->run(stop);
     });
   }
   net_thread_ = std::jthread([this] { link_.run(); });
-  make_realtime(net_thread_.native_handle(), "palpate-net", kNetworkPriority);  // `start` says if refused
+  give_role(net_thread_.native_handle(), ThreadRole::kNetwork);  // `start` says if refused
   for (const Time start = now(); !link_.welcomed;) {
     if (wait_for_interrupt(std::chrono::milliseconds(20))) return false;
     if (now() - start < patience) continue;
@@ -84,8 +84,7 @@ bool HeldTool::connect(Time patience) {
 void HeldTool::start(Heartbeat* heartbeat) {
   loop_.heartbeat = heartbeat;
   haptic_thread_ = std::jthread([this](const std::stop_token& stop) { loop_.run(stop); });
-  const std::string refused =
-      make_realtime(haptic_thread_.native_handle(), "palpate-haptic", kHapticPriority);
+  const std::string refused = give_role(haptic_thread_.native_handle(), ThreadRole::kHaptic);
   if (!refused.empty()) log::warning("{}{}", name_, refused);
   real_time_ = refused.empty();
 }
@@ -141,7 +140,7 @@ void HeldTool::report_doubt() {
   doubt_ = doubt;
 }
 
-/// Whoever feels less than the tissue gives should know that the link is to blame.
+/// Whoever feels less than the tissue gives should know that the link is to blame: too slow, or too narrow.
 void HeldTool::report_slow_link() {
   const bool slow = link_.level >= LinkLevel::kLean;
   if (slow && !told_.slow) {
@@ -151,6 +150,9 @@ void HeldTool::report_slow_link() {
         name_, config_.server);
   }
   told_.slow = slow;
+  const bool drops_large = link_.drops_large;
+  if (drops_large && !told_.drops_large) log::warning("{}{}", name_, large_datagrams_text());
+  told_.drops_large = drops_large;
 }
 
 void HeldTool::look() {
@@ -200,6 +202,8 @@ Json HeldTool::report() const {
   tool["link"]["gaps"] = figures.gaps;
   tool["link"]["longest_gap_ms"] = 1e3 * to_seconds(figures.longest_gap);
   tool["link"]["surfaces"] = figures.surfaces;
+  tool["link"]["page_requests"] = figures.page_requests;
+  tool["link"]["drops_large"] = figures.drops_large();
   tool["link"]["rate_hz"] = link_.session().welcome().rate_hz;
   const PipelineStats& stats = pipeline_.stats();
   tool["link"]["first_itself_s"] = stats.first_itself > Time{}

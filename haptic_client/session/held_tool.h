@@ -80,7 +80,7 @@ class HeldTool {
   bool real_time_ = false;
   /// States that the log has told.
   struct Told {
-    bool silent = false, weak = false, paused = false, slow = false;
+    bool silent = false, weak = false, paused = false, slow = false, drops_large = false;
   } told_;
   Fault fault_ = Fault::kNone;
   std::optional<Doubt> doubt_;

@@ -34,4 +34,22 @@ void LinkFigures::page(Time now) noexcept {
   newest_page = now;
 }
 
+void LinkFigures::requested_pages(Time now) noexcept {
+  if (page_requests++ == 0) first_request = now;
+}
+
+/// A link that is down altogether says nothing of the size of its datagrams: the newest sample is late, too.
+bool LinkFigures::drops_large() const noexcept {
+  constexpr std::uint64_t kEnough = 12;  // requests: of 3 s at the fewest a second
+  return pages == 0 && page_requests >= kEnough && newest_sample - first_request > kPatience;
+}
+
+std::string large_datagrams_text() {
+  return "pages of the surface were requested, and none came, though samples do: datagrams of 937 bytes do "
+         "not "
+         "get through, as where a tunnel or firewall on the way drops IP fragments, so that a law without "
+         "pages stands in; let fragments pass, give the tunnel an MTU of 1280 bytes (`ip link set dev IF mtu "
+         "1280`), or choose a law that needs no pages (`--method two_tangents`)";
+}
+
 }  // namespace palpate::client

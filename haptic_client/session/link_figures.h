@@ -1,4 +1,6 @@
 #pragma once
+#include <string>
+
 #include "common/histogram.h"
 #include "common/time.h"
 #include "protocol/messages.h"
@@ -16,6 +18,8 @@ struct LinkFigures {
   Time newest_sample{}, longest_gap{};         ///< when it came; between two samples that came
   std::uint64_t gaps = 0;                      ///< of more than `kGap`
   std::uint64_t surfaces = 0;                  ///< samples that name a surface, so that its pages can come
+  std::uint64_t page_requests = 0;             ///< datagrams that requested pages
+  Time first_request{};                        ///< when the first of them left
   protocol::UplinkCounts uplink{};             ///< as the server told them last; none: it does not
   double stiffest = 0;  ///< N/m: of all samples in contact, how much force a metre into the surface makes
 
@@ -25,6 +29,14 @@ struct LinkFigures {
   void received(std::size_t bytes, Time now) noexcept;
   void sample(const protocol::ForceSample& sample, Time now) noexcept;
   void page(Time now) noexcept;
+  void requested_pages(Time now) noexcept;
+  /// True if samples come while no page of those requested has come in `kPatience`: pages are the largest
+  /// datagrams of a session, so that the way drops large ones.
+  bool drops_large() const noexcept;
+  static constexpr Time kPatience = std::chrono::seconds(3);
 };
+
+/// Returns what is known of a way that drops large datagrams, and what helps; a sentence.
+std::string large_datagrams_text();
 
 }  // namespace palpate::client

@@ -23,7 +23,7 @@ LinkProbe::LinkProbe(const protocol::Endpoint& server, const protocol::Key& key)
 
 void LinkProbe::start() {
   thread_ = std::jthread([this] {
-    name_thread("palpate-probe");
+    take_role(ThreadRole::kNetwork, "palpate-probe");
     Doorbell bell;
     socket_.run(bell, kBetweenHellos,
                 {.on_datagram = [this](auto bytes, const auto& from) { take(bytes, from); },

@@ -40,7 +40,7 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
   const std::uint64_t received = stats_.received;
   protocol::Datagram datagram;
   const protocol::Message* message = nullptr;
-  const Verdict verdict = from == server_ ? protocol::decode(bytes, datagram) : Verdict::kNotOurs;
+  const Verdict verdict = from == server_ ? protocol::decode_fields(bytes, datagram) : Verdict::kNotOurs;
   if (verdict == Verdict::kAccepted) {
     message = session_.receive(datagram, t, stats_);
   } else {
@@ -93,6 +93,7 @@ void NetLink::on_tool_states() {
     state.tool = session_.welcome().tool;
     state.flags |= protocol::ToolState::kRequestsUplink;
     pace_.shrink(state);
+    if ((state.flags & protocol::ToolState::kAsksPages) != 0) figures_.requested_pages(Time{state.t_ns});
     if (!pace_.packs_ticks()) waiting_.clear();
     waiting_.push_back(state);
     const bool news = state.buttons != buttons_ || (state.flags & protocol::ToolState::kRearmed) != 0;
@@ -124,6 +125,7 @@ void NetLink::send_ticks(std::span<const protocol::ToolState> ticks) {
 void NetLink::on_timer() {
   watcher.note(stats_);
   level = pace_.level();
+  drops_large = figures_.drops_large();
   greet();
   if (!session_.welcomed() || ticking_ || ++idle_timers_ < kPatientTimers) return;
   send(protocol::ToolState{.tool = session_.welcome().tool,

@@ -39,6 +39,8 @@ class NetLink {
   std::atomic<int> key_mismatch{-1};
   /// Level of the link, for a watching thread.
   std::atomic<LinkLevel> level{LinkLevel::kPacked};
+  /// True while the way drops large datagrams (`LinkFigures::drops_large`).
+  std::atomic<bool> drops_large{false};
   /// `errno` of the newest datagram, if the system would not send it: there is no way to the server.
   std::atomic<int> unsendable{0};
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/ages.h"
+#include "haptic_client/session/whole_error.h"
 
 namespace palpate::client {
 using protocol::Telemetry;
@@ -110,17 +111,21 @@ void TelemetryMaker::complete(const TickResult& result, const Pipeline& pipeline
   published_ = next_;
 }
 
-/// The next of the errors: of a law, or, behind all laws, of the force on the hand.
+/// The next of the errors: of a law, or, behind all laws, of the force on the hand and its parts.
 void TelemetryMaker::name_error(const Observation& observation) noexcept {
+  static_assert(kHandErrors.size() <= Telemetry::kMostParts);
+  static_assert(Telemetry::kLastColumn + 1 == Telemetry::kMostLaws + Telemetry::kMostParts);
   const Scoring& scoring = observation.scoring();
-  next_.named = next_.named < next_.laws ? static_cast<std::uint8_t>(next_.named + 1) : std::uint8_t{0};
+  next_.named = static_cast<std::uint8_t>((next_.named + 1U) % (next_.laws + kHandErrors.size()));
   next_.name = {};
   double error = -1;
   if (next_.named < next_.laws) {
     append(next_.name, scoring.names()[next_.named]);
     if (scoring.scored() > 0) error = scoring.metrics(next_.named).mean_percent;
   } else {
-    error = observation.total_percent().value_or(-1);
+    const HandError& part = kHandErrors[next_.named - next_.laws];
+    append(next_.name, part.name);
+    error = part.percent(observation);
   }
   next_.error_percent = error >= 0 ? static_cast<float>(std::min(error, 1e6)) : -1;
 }

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/core.h>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
 
+#include "common/perception.h"
 #include "common/text.h"
 
 namespace palpate::client {
@@ -30,7 +33,52 @@ std::string how_of(const DiscretisationError& error) {
   return "";
 }
 
+double known_part(const Observation& observation, double (*of)(const RenderedErrorParts&)) noexcept {
+  const RenderedError& rendered = observation.scoring().rendered();
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  if (rendered.judged() == 0) return kUnknown;
+  const RenderedErrorParts parts = rendered.parts();
+  return std::isnan(parts.hand.mean_percent) ? kUnknown : of(parts);
+}
+
 }  // namespace
+
+const std::array<HandError, 6> kHandErrors{{
+    {"", "total_percent", "",
+     [](const Observation& o) noexcept {
+       return o.total_percent().value_or(std::numeric_limits<double>::quiet_NaN());
+     }},
+    {"extrapolation", "extrapolation_percent", "",
+     [](const Observation& o) noexcept {
+       return known_part(o, [](const RenderedErrorParts& parts) { return parts.extrapolation_percent; });
+     }},
+    {"outages", "outages_percent", "the law where no sample came for more than 300 ms",
+     [](const Observation& o) noexcept {
+       return known_part(o, [](const RenderedErrorParts& parts) { return parts.outages_percent; });
+     }},
+    {"fades", "fades_percent", "soft start, and fades of forces that were old or not settled",
+     [](const Observation& o) noexcept {
+       return known_part(o, [](const RenderedErrorParts& parts) { return parts.fades_percent; });
+     }},
+    {"limits", "limits_percent", "passivity, damping, largest force and slew",
+     [](const Observation& o) noexcept {
+       return known_part(o, [](const RenderedErrorParts& parts) { return parts.limits_percent; });
+     }},
+    {"worst tick", "hand_max_percent", "",
+     [](const Observation& o) noexcept {
+       return known_part(o, [](const RenderedErrorParts& parts) { return parts.hand.max_of_rms_percent; });
+     }},
+}};
+
+std::optional<double> unexplained_age_ms(const Json& tool) {
+  const auto samples_hz = tool["motion"]["sample_rate_hz"].get<double>();
+  if (!tool.contains("loop") || tool["loop"]["real_time"].get<bool>() || samples_hz <= 0) return {};
+  const Json& age = tool["force"]["age_ms"];
+  const double explained =
+      age["p50"].get<double>() + 1e3 / samples_hz + 1e3 / tool["loop"]["rate_hz"].get<double>();
+  const auto p99 = age["p99"].get<double>();
+  return p99 > explained ? std::optional(p99) : std::nullopt;
+}
 
 Json whole_error_report(const Observation& observation) {
   const DiscretisationErrors published = observation.published_errors().mean();
@@ -55,13 +103,10 @@ Json whole_error_report(const Observation& observation) {
   const auto known = [&](double percent) { return touched ? Json(percent) : Json(); };
   report["hand_percent"] = known(parts.hand.mean_percent);
   report["hand_p99_percent"] = known(parts.hand.p99_of_rms_percent);
-  report["hand_max_percent"] = known(parts.hand.max_of_rms_percent);
-  report["extrapolation_percent"] = known(parts.extrapolation_percent);
-  report["outages_percent"] = known(parts.outages_percent);
-  report["fades_percent"] = known(parts.fades_percent);
-  report["limits_percent"] = known(parts.limits_percent);
-  const std::optional<double> total = observation.total_percent();
-  report["total_percent"] = total ? Json(*total) : Json();
+  for (const HandError& error : kHandErrors) {
+    const double percent = error.percent(observation);
+    report[error.key] = std::isnan(percent) ? Json() : Json(percent);
+  }
   return report;
 }
 
@@ -101,6 +146,17 @@ std::string law_text(const Json& force) {
                       : "not known, and not in the sum: how well it describes this organ";
 }
 
+/// How old the force was, beside what a hand can tell; and what made it older than the rates do.
+void print_age(const Json& tool) {
+  fmt::print("          {}\n", beside_the_hand(tool["force"]["age_ms"]["p99"].get<double>(), " (p99)"));
+  if (const auto age = unexplained_age_ms(tool)) {
+    fmt::print(
+        "          {:.0f} ms is later than the rates explain, and the threads that carry the force had no "
+        "real-time priority: raise `ulimit -r` (rtprio in /etc/security/limits.conf)\n",
+        *age);
+  }
+}
+
 }  // namespace
 
 void print_whole_error(const Json& tool) {
@@ -112,10 +168,11 @@ void print_whole_error(const Json& tool) {
   } else {
     fmt::print(
         "  error   of the force on the hand: {} of its root mean square in the mean; at the worst tick {} %, "
-        "mesh and time step aside; a hand can tell about 10 %\n{}",
+        "mesh and time step aside\n{}",
         total_text(rendered), two_figures(rendered["hand_max_percent"].get<double>()),
         unsettled_text(rendered));
   }
+  print_age(tool);
   const auto row = [&](const char* name, const char* percent, const std::string& how) {
     const std::string number =
         rendered[percent].is_null() ? "?" : two_figures(rendered[percent].get<double>());
@@ -125,10 +182,8 @@ void print_whole_error(const Json& tool) {
   row("mesh", "mesh_percent", source("mesh"));
   row("time step", "motion_percent", source("motion"));
   fmt::print("          {:<14}{:>7}   {}\n", "tissue's law", "?", law_text(tool["force"]));
-  row("extrapolation", "extrapolation_percent", source("extrapolation"));
-  row("outages", "outages_percent", "the law where no sample came for more than 300 ms");
-  row("fades", "fades_percent", "soft start, and fades of forces that were old or not settled");
-  row("limits", "limits_percent", "passivity, damping, largest force and slew");
+  for (const HandError& error : std::span(kHandErrors).subspan(1, 4))
+    row(error.name, error.key, error.how[0] == 0 ? source(error.name) : error.how);
   if (const double unjudged = percent_of_ticks(rendered, "unjudged_ticks"); unjudged > 0) {
     fmt::print(
         "          {:.3g} % of the ticks could not be judged: no sample of their session came within 0.9 s\n",

@@ -561,8 +561,8 @@ return {
         {
           name = "named",
           type = "u8",
-          about = "The law of column `named`, and its mean error so far, %, below 0: not known. Behind all laws, without a name, stands the force on the hand: at most this is its mean error, by mesh, time step, extrapolation and safety chain together. Another one in each message.",
-          within = {0, 8},
+          about = "The law of column `named`, and its mean error so far, %, below 0: not known. Behind all laws, without a name, stands the force on the hand: at most this is its mean error, by mesh, time step, extrapolation and safety chain together; behind that its measured parts and the worst tick, by their names in the client's report. Another one in each message.",
+          within = {0, 15},
         },
         {name = "name", type = "text", size = 32},
         {name = "error", type = "f32", unit = "%", within = {-4e+38, 1000000}},

@@ -57,8 +57,9 @@ void ToolEvents::take(const protocol::Telemetry& published, Time now, Time began
     client_.law_names[published.named] = name_of(published.name);
     client_.errors_percent[published.named] =
         published.error_percent < 0 ? std::nanf("") : published.error_percent;
-  } else if (published.named == client_.laws) {
-    client_.total_percent = published.error_percent < 0 ? std::nanf("") : published.error_percent;
+  } else if (const std::size_t part = published.named - client_.laws; part < SeenClient::kMostParts) {
+    client_.part_names[part] = name_of(published.name);
+    client_.parts_percent[part] = published.error_percent < 0 ? std::nanf("") : published.error_percent;
   }
   client_.age_ms = 1e-6 * static_cast<double>(published.age_ns);
   client_.period_ms = 1e-6 * published.loop.period_ns;

@@ -106,6 +106,7 @@ void show_tool(const SessionInput& input, const ServedTools::Outcome* outcome, d
   const ToolForce& force = outcome->force;
   seen.contact = force.contacts > 0;
   seen.flagged = force.flagged;
+  seen.flagged_samples = outcome->flagged_samples;
   seen.f_W = force.force;
   if (outcome->answer)
     seen.sample = {outcome->answer->number, t, static_cast<float>(force.force.norm()),
@@ -148,6 +149,7 @@ void show_organ(const Simulation& simulation, Picture& picture) noexcept {
   const Resection* const resection = simulation.resection();
   if (resection != nullptr && resection->version() != picture.cuts) show_cuts(simulation, picture);
   if (resection != nullptr) picture.resection = seen_of(*resection);
+  if (simulation.strain() != nullptr) picture.strain = *simulation.strain();
   for (std::size_t i = 0; i < simulation.tools(); ++i) show_loads(simulation.loads(i), picture.tools[i]);
 }
 

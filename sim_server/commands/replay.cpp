@@ -43,10 +43,13 @@ int serve_replay(const ReplayOptions& options) {
   ForcePlayer player(forces, mailboxes);
   NetLink link(socket, std::move(sessions), mailboxes, nullptr);
   std::jthread net([&] {
-    name_thread("palpate-net");
+    take_role(ThreadRole::kNetwork);
     link.run();
   });
-  std::jthread playing([&](const std::stop_token& stop) { player.run(stop); });
+  std::jthread playing([&](const std::stop_token& stop) {
+    take_role(ThreadRole::kSimulation);
+    player.run(stop);
+  });
   log::info("{}: {} forces, {:.1f} s at {:.1f} Hz; listening on {} (UDP)", options.capture.string(),
             forces.samples.size(), forces.seconds(), forces.rate_hz(), protocol::to_string(socket.local()));
   watch(player, link, options.seconds);

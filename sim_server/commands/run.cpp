@@ -274,7 +274,7 @@ void check_run_files(const ServerOptions& options, const Scene& scene) {
 std::jthread start_recording(protocol::Recorder* recorder) {
   if (recorder == nullptr) return {};
   return std::jthread([recorder](const std::stop_token& stop) {
-    name_thread("palpate-record");
+    take_role(ThreadRole::kRecording);
     recorder->run(stop);
   });
 }
@@ -283,7 +283,7 @@ std::jthread start_recording(protocol::Recorder* recorder) {
 std::jthread start_viewing(LiveView* view) {
   if (view == nullptr) return {};
   return std::jthread([view](const std::stop_token& stop) {
-    make_background("palpate-view");  // pages may be late; forces may not
+    take_role(ThreadRole::kPage);
     const std::stop_callback ends(stop, [view] { view->viewer().stop(); });
     view->viewer().run();
   });
@@ -301,8 +301,8 @@ auto serve_until(SimLoop& loop, NetLink& link, protocol::Recorder* recorder, Liv
   });
   const std::jthread viewing = start_viewing(view);
   std::jthread sim([&](const std::stop_token& stop) { loop.run(stop); });
-  make_realtime(net.native_handle(), "palpate-net", kNetworkPriority);  // refused as the next is, or not
-  warn_if_refused(make_realtime(sim.native_handle(), "palpate-sim", kSimulationPriority));
+  give_role(net.native_handle(), ThreadRole::kNetwork);  // refused as the next is, or not
+  warn_if_refused(give_role(sim.native_handle(), ThreadRole::kSimulation));
   warn_if_refused(lock_memory());  // after the threads, whose stacks a small limit would not hold
   return watching();               // then each is asked to stop, the simulation first
 }

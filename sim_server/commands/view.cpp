@@ -161,7 +161,7 @@ int view_capture(const ViewOptions& options) {
   ViewerFeed feed(facts.organ.rest);
   Viewer viewer(*address, "", facts, feed, &session.bytes());
   std::jthread serving([&] {
-    name_thread("palpate-view");
+    take_role(ThreadRole::kPage);
     viewer.run();
   });
   log::info("{}: {} forces, {:.1f} s; the page: http://{}/; Ctrl-C ends it", options.capture.string(),

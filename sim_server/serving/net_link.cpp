@@ -48,7 +48,7 @@ void NetLink::run() {
 void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from) {
   const Time t = now();
   Datagram datagram;
-  if (const Verdict verdict = protocol::decode(bytes, datagram); verdict != Verdict::kAccepted) {
+  if (const Verdict verdict = protocol::decode_fields(bytes, datagram); verdict != Verdict::kAccepted) {
     record(t, from, Direction::kIn, bytes, false);
     return refuse(verdict, bytes, from);
   }
@@ -119,14 +119,14 @@ void NetLink::pass_on(std::uint64_t session, std::span<const protocol::ToolState
   mailboxes_.tools[state.tool].input.write(input);
 }
 
-/// The pages that some ticks ask for, each once, if they are of the surface that we have; what is lost, or
-/// too much at once, will be asked for again.
+/// The pages that some ticks ask for, each once, if they are of the surface that we have and the client is
+/// known to receive at its address; what is lost, or too much at once, will be asked for again.
 void NetLink::send_pages(std::span<const protocol::ToolState> ticks, Time t) {
   const std::uint8_t tool = ticks.back().tool;
   std::shared_ptr<SurfacePager>& pager = pagers_[tool];
   mailboxes_.tools[tool].pager.read(pager);
-  if (pager == nullptr) return;
   auto* const member = sessions_.holder(tool);
+  if (pager == nullptr || !member->is_reached()) return;
   std::vector<std::uint32_t> sent;
   protocol::SurfacePage page;
   for (const protocol::ToolState& tick : ticks) {

@@ -156,8 +156,11 @@ std::span<const ServedTools::Outcome> ServedTools::step(std::span<const SessionI
   follow_surface();
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     outcomes_[i] = {answers[i], {}};
-    if (inputs[i].session != 0 && inputs[i].fresh)
+    if (inputs[i].session != 0 && inputs[i].fresh) {
       outcomes_[i].answer = holders_[i].last = sample_of(i, inputs[i].state, answers[i]);
+      holders_[i].flagged += answers[i].flagged ? 1 : 0;
+    }
+    outcomes_[i].flagged_samples = holders_[i].flagged;
   }
   return outcomes_;
 }

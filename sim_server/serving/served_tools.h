@@ -49,6 +49,7 @@ class ServedTools {
   struct Outcome {
     ToolForce force;
     std::optional<protocol::ForceSample> answer;
+    std::uint64_t flagged_samples = 0;  ///< answers of this session so far that were flagged
   };
 
   /// Steps by `dt` (s), with an input for each tool. A tool that nobody holds, or whose device is lost, is
@@ -68,7 +69,7 @@ class ServedTools {
 
  private:
   struct Holder {
-    std::uint64_t session = 0, samples = 0;
+    std::uint64_t session = 0, samples = 0, flagged = 0;
     std::uint32_t beginnings = 0;  // of its path
     protocol::ToolState before{};  // of the step before
     protocol::ForceSample last{};

@@ -12,6 +12,7 @@
 #include "common/discretisation_error.h"
 #include "protocol/messages.h"
 #include "sim_server/mesh/tet_mesh.h"
+#include "sim_server/simulation/strain_range.h"
 
 namespace palpate::sim {
 
@@ -51,7 +52,8 @@ struct SeenTool {
     float force = 0;
     std::uint32_t flags = 0;
   } sample;
-  DiscretisationErrors errors{};  ///< of that force, where its client asks for them
+  std::uint64_t flagged_samples = 0;  ///< of this holder so far
+  DiscretisationErrors errors{};      ///< of that force, where its client asks for them
 };
 
 /// Results of a resection. m^3, m^2, m. Distances are from the plan: of tissue removed by heat, and of faces
@@ -77,6 +79,7 @@ struct Picture {
   std::uint32_t cuts = 0;
   std::vector<Triangle> triangles{};
   std::optional<SeenResection> resection{};  ///< of an organ that can be cut
+  std::optional<StrainRange> strain{};       ///< so far; none: no law of tissue
   std::array<SeenTool, kMaxTools> tools{};
 };
 
@@ -106,8 +109,14 @@ struct SeenClient {
   Name law{};  ///< the rendered one; behind a colon, its substitute
   std::array<Name, kMostLaws> law_names{};
   std::array<float, kMostLaws> errors_percent{};  ///< NaN: not scored
-  float total_percent =
-      std::numeric_limits<float>::quiet_NaN();  ///< at most, of the force on the hand; NaN: not known
+  /// Errors of the force on the hand, %, NaN: not known: at most this in all (no name), then its parts.
+  static constexpr std::size_t kMostParts = protocol::Telemetry::kMostParts;
+  std::array<Name, kMostParts> part_names{};
+  std::array<float, kMostParts> parts_percent = [] {
+    std::array<float, kMostParts> unknown{};
+    unknown.fill(std::numeric_limits<float>::quiet_NaN());
+    return unknown;
+  }();
   std::array<Name, kMostInterventions> intervention_names{};
   std::array<std::uint64_t, kMostInterventions> intervention_counts{};
   std::array<Name, kMostStates> state_names{};  ///< what holds now: "fault", "clutched", ...

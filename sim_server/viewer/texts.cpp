@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "common/perception.h"
 #include "common/report.h"
 
 namespace palpate::sim {
@@ -62,6 +63,7 @@ Json seen_json(const SeenTool& tool) {
       {"f", brief(tool.f_W)},
       {"contact", tool.contact},
       {"flagged", tool.flagged},
+      {"flagged_samples", tool.flagged_samples},
       {"errors", {{"mesh", error_json(tool.errors.mesh)}, {"time_step", error_json(tool.errors.time_step)}}},
       {"loads", loads_json(tool)}};
 }
@@ -126,15 +128,18 @@ std::string state_text(const Picture& picture, std::span<const SeenPeer> peers, 
                    {"real_time_factor", number_or_null(rates.real_time_factor)},
                    {"tools", tools},
                    {"resection", resection_json(picture.resection)},
+                   {"strain", picture.strain ? picture.strain->to_text() : ""},
                    {"peers", peers_json(peers)}}}});
 }
 
 std::string client_text(const SeenClient& client) {
-  Json laws = Json::array(), errors = Json::array(), interventions = Json::object();
+  Json laws = Json::array(), errors = Json::array(), parts = Json::object(), interventions = Json::object();
   for (std::size_t i = 0; i < client.laws; ++i) {
     laws.push_back(text_of(client.law_names[i]));
     errors.push_back(number_or_null(static_cast<double>(client.errors_percent[i])));
   }
+  for (std::size_t i = 1; i < SeenClient::kMostParts && client.part_names[i][0] != 0; ++i)
+    parts[text_of(client.part_names[i])] = number_or_null(static_cast<double>(client.parts_percent[i]));
   Json states = Json::array();
   for (std::size_t i = 0; i < client.states; ++i) states.push_back(text_of(client.state_names[i]));
   for (std::size_t i = 0; i < client.interventions; ++i)
@@ -144,8 +149,10 @@ std::string client_text(const SeenClient& client) {
                    {"law", text_of(client.law)},
                    {"laws", laws},
                    {"errors_percent", errors},
-                   {"total_percent", number_or_null(static_cast<double>(client.total_percent))},
+                   {"total_percent", number_or_null(static_cast<double>(client.parts_percent[0]))},
+                   {"parts_percent", parts},
                    {"age_ms", brief(client.age_ms)},
+                   {"beside", beside_the_hand(client.age_ms)},
                    {"period_ms", brief(client.period_ms)},
                    {"missed", client.missed},
                    {"passivity_gain", brief(client.passivity_gain)},

@@ -106,12 +106,14 @@ class MadeSession:
             "rate_hz": 30.0, "real_time_factor": 1.0,
             "tools": [{"held": True, "p": self.tip(t), "q": [1, 0, 0, 0], "f": [0.1 * f, 0, f], "contact": f > 0,
                        "errors": {"mesh": {"percent": 41, "source": "estimated"}, "time_step": {"percent": 0, "source": "none by construction"}},
-                       "flagged": False, "loads": [[i, 0, 0, -f / len(near)] for i in near]}],
+                       "flagged": False, "flagged_samples": 12, "loads": [[i, 0, 0, -f / len(near)] for i in near]}],
+            "strain": "strain up to 45 % of the surface under tools, in 12 of 80 steps in contact beyond the 20 % that the law of this tissue is meant for",
             "peers": [{"tool": 0, "address": "127.0.0.1:40112", "loss_percent": 0.4, "rate_hz": 500.0}]}})
 
     def client(self, t, device="browser"):
         return json.dumps({"client": {
             "tool": 0, "law": "best_recent: two_tangents", "laws": LAWS, "errors_percent": [11 + math.sin(t), 6, 3.2 + 0.5 * math.cos(t)], "total_percent": 45.6,
+            "parts_percent": {"extrapolation": 3.2, "outages": 0.4, "fades": 0.9, "limits": 0, "worst tick": 61}, "beside": "a hand can tell 10 % of a force",
             "age_ms": 38 + 9 * math.sin(5 * t), "period_ms": 2.0 + 0.05 * math.sin(40 * t), "missed": 3, "passivity_gain": 1.0,
             "interventions": {"clamped": 0, "slew_limited": 2, "faded": 1}, "states": ["device_lost"], "felt": [0, 0, self.force(t)],
             "p": self.tip(t), "device": device, "has_motors": False}})

@@ -55,7 +55,10 @@ class PageTest(PageCase):
         self.assertEqual(self.number("Mesh"), "41.0")  # beside the small error of the extrapolation
         self.assertEqual(self.number("Force on the hand"), "45.6")
         self.assertEqual(self.text("error-beside"), "mesh 41.0 % estimated")
-        self.assertEqual(self.number("Extrapolation"), "\u2013")  # of "best_recent", which runs not beside itself here
+        for name, value in [("Extrapolation", "3.2"), ("Outages", "0.4"), ("Fades", "0.9"), ("Limits", "0"), ("Worst tick", "61"), ("Not settled", "12")]:
+            self.assertEqual(self.number(name), value)
+        self.assertIn("strain up to 45 %", self.number("Law of the tissue"))
+        self.assertIn("a hand can tell", self.number("Beside a hand"))
         self.assertEqual(self.number("Now"), "device lost")
         self.assertEqual(self.number("Peer"), "127.0.0.1:40112")
         self.assertEqual(self.number("Slew limited"), "2")

@@ -39,7 +39,7 @@ struct Network {
   /// Whether it reaches the simulation. What answers it goes to the client, if it asked.
   bool to_server(const Bytes& bytes, const Endpoint& from = kClient) {
     Datagram datagram;
-    if (decode(bytes, datagram) != Verdict::kAccepted) return false;
+    if (decode_fields(bytes, datagram) != Verdict::kAccepted) return false;
     const auto outcome = server.receive(datagram, from, now, {++fresh, {fresh, 1}}, server_stats);
     answered = outcome.answer.has_value();
     if (outcome.answer) {
@@ -55,14 +55,16 @@ struct Network {
   /// Whether it reaches the haptic loop.
   bool to_client(const Bytes& bytes) {
     Datagram datagram;
-    if (decode(bytes, datagram) != Verdict::kAccepted) return false;
+    if (decode_fields(bytes, datagram) != Verdict::kAccepted) return false;
     return client.receive(datagram, now, client_stats) != nullptr;
   }
   bool shake_hands() {
     while (const auto hello = client.poll(now)) to_server(from_client(*hello));
     return client.welcomed();
   }
-  Bytes state() { return from_client(ToolState{.tick = ++tick}); }
+  Bytes state(std::uint64_t newest_sample = 0) {
+    return from_client(ToolState{.tick = ++tick, .newest_sample = newest_sample});
+  }
   Bytes sample() { return from_server(ForceSample{.number = ++number, .f_W = {0, 1, 0}}); }
 
   ClientSession client;
@@ -175,6 +177,74 @@ TEST_CASE("with a key a session goes on from another address at once, and withou
   REQUIRE(open.shake_hands());
   CHECK_FALSE(open.to_server(open.state(), remote));
   CHECK(open.server.holder(0)->endpoint == kClient);
+}
+
+TEST_CASE("states relayed from a forged address aim nothing large at it, whatever their client receives") {
+  Network n;
+  REQUIRE(n.shake_hands());
+  REQUIRE(n.to_server(n.state()));
+  REQUIRE(n.to_client(n.sample()));
+  CHECK(n.server.holder(0)->is_reached());  // by its cookie
+  for (int round = 0; round < 5; ++round) {
+    const std::uint64_t used = n.number;
+    for (int i = 0; i < 20; ++i) {  // samples that the client misses: fewer than make it begin anew
+      REQUIRE(n.to_server(n.state(used), kStranger));  // ahead of the client's own
+      CHECK(n.server.holder(0)->endpoint == kStranger);
+      CHECK_FALSE(n.server.holder(0)->is_reached());
+      n.sample();  // to the forged address
+    }
+    REQUIRE(n.to_server(n.state(used)));
+    CHECK(n.server.holder(0)->is_reached());  // as before: pages go on
+    REQUIRE(n.to_client(n.sample()));         // of a number above all that went to the forged address
+  }
+}
+
+TEST_CASE("a client that moved is reached once it has used a sample that was sent to its new address") {
+  const Endpoint remote{.address = {10, 0, 0, 2}, .port = 1001};
+  Network n;
+  REQUIRE(n.shake_hands());
+  REQUIRE(n.to_server(n.state()));
+  REQUIRE(n.to_client(n.sample()));
+  const std::uint64_t used = n.number;
+  const Bytes on_its_way = n.sample();  // to the address before
+  REQUIRE(n.to_server(n.state(used), remote));
+  CHECK_FALSE(n.server.holder(0)->is_reached());
+  REQUIRE(n.to_client(on_its_way));
+  REQUIRE(n.to_server(n.state(used + 1), remote));
+  CHECK_FALSE(n.server.holder(0)->is_reached());
+  REQUIRE(n.to_client(n.sample()));
+  REQUIRE(n.to_server(n.state(used + 1), remote));
+  CHECK_FALSE(n.server.holder(0)->is_reached());
+  REQUIRE(n.to_server(n.state(used + 2), remote));
+  CHECK(n.server.holder(0)->is_reached());
+  REQUIRE(n.to_server(n.state(used + 2), kClient));  // back: asked again, as it may be another by now
+  CHECK_FALSE(n.server.holder(0)->is_reached());
+}
+
+TEST_CASE("ticks behind a state are read once its tag is known to be right") {
+  Network n;
+  REQUIRE(n.shake_hands());
+  const auto with_no_ticks_behind = [&](const Key& key) {
+    ToolState state{.tick = ++n.tick};
+    state.flags = ToolState::kHasEarlierTicks;
+    const ServerSessions::Member& member = *n.server.holder(0);
+    Bytes bytes(kMaxDatagram);
+    std::size_t size = encode({member.session, 1000 + n.tick}, state, bytes);
+    bytes[size++] = std::byte{64};  // one more than there may be
+    set_payload_size(bytes, size - kHeaderBytes);
+    bytes.resize(seal(bytes, size, key));
+    return bytes;
+  };
+  const auto rejected = [&](Verdict verdict) {
+    return n.server_stats.rejected_by[static_cast<std::size_t>(verdict)];
+  };
+  CHECK_FALSE(n.to_server(with_no_ticks_behind(kWrong)));
+  CHECK(rejected(Verdict::kTag) == 1);
+  CHECK(rejected(Verdict::kValue) == 0);
+  CHECK_FALSE(n.to_server(with_no_ticks_behind(n.server.holder(0)->keys.in)));
+  CHECK(rejected(Verdict::kValue) == 1);
+  CHECK(n.server_stats.implausible == 0);  // its sequence number counts for nothing
+  CHECK(n.to_server(n.state()));
 }
 
 TEST_CASE(

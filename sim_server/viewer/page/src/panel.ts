@@ -93,15 +93,18 @@ export class Panel {
       set_text(by_id("error-beside"), "");
       return [];
     }
-    const felt = client ? client.errors_percent[client.laws.indexOf(client.law.split(":")[0]!)] : null;
     const { mesh, time_step } = now;
     set_text(by_id("error-beside"), mesh.percent === null ? "mesh not known" : `mesh ${figures(mesh.percent)} % ${mesh.source}`);
+    const parts: Row[] = (client?.parts_percent ?? []).map(([name, percent]) => [sentence(name), figures(percent), "%"]);
     return [
       ["Force on the hand", figures(client?.total_percent ?? null), "% at most, in the mean"],
       ["Mesh", figures(mesh.percent), `% ${mesh.source}`],
       ["Time step", figures(time_step.percent), `% ${time_step.source}`],
-      ["Extrapolation", figures(felt), "% measured here"],
-      ["Law of the tissue", "not known", ""],
+      ...parts,
+      ["Law of the tissue", this.session_.state?.strain || "not known", ""],
+      ["Not settled", String(now.flagged_samples), now.flagged_samples === 1 ? "sample of the server" : "samples of the server"],
+      ["Age of the force", fixed(client?.age_ms, 0), "ms"],
+      ["Beside a hand", client?.beside || kNone, ""],
     ];
   }
 

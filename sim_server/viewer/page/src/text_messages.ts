@@ -40,6 +40,7 @@ export interface ToolNow {
   f: Vec3; // N, on the tool
   contact: boolean;
   flagged: boolean;
+  flagged_samples: number; // of its client so far
   mesh: Discretisation;
   time_step: Discretisation;
   loads: [number, number, number, number][]; // vertex; N, on the organ
@@ -66,6 +67,7 @@ export interface State {
   real_time_factor: number | null;
   tools: ToolNow[];
   resection: Resected | null;
+  strain: string; // beyond what the tissue's law means, in words; empty: nowhere
   peers: { tool: number; address: string; loss_percent: number | null; rate_hz: number | null }[];
 }
 
@@ -75,6 +77,8 @@ export interface Client {
   laws: string[];
   errors_percent: (number | null)[];
   total_percent: number | null;
+  parts_percent: [string, number | null][]; // of that error, by their names in the client's report
+  beside: string; // the age of the force beside what a hand can tell
   age_ms: number | null;
   period_ms: number | null;
   missed: number | null;
@@ -163,6 +167,7 @@ function state(x: Json): State {
     real_time_factor: number(x.real_time_factor),
     tools: list(x.tools).filter(is_object).map(tool_now),
     resection: is_object(x.resection) ? resected(x.resection) : null,
+    strain: text(x.strain),
     peers: list(x.peers).filter(is_object).map((peer) => ({
       tool: number(peer.tool) ?? 0,
       address: text(peer.address),
@@ -200,6 +205,7 @@ function tool_now(x: Json): ToolNow {
     f: vec3(x.f) ?? [0, 0, 0],
     contact: x.contact === true,
     flagged: x.flagged === true,
+    flagged_samples: number(x.flagged_samples) ?? 0,
     mesh: discretisation(errors.mesh),
     time_step: discretisation(errors.time_step),
     loads: loads as ToolNow["loads"],
@@ -208,12 +214,15 @@ function tool_now(x: Json): ToolNow {
 
 function client(x: Json): Client {
   const counts = is_object(x.interventions) ? Object.entries(x.interventions) : [];
+  const parts = is_object(x.parts_percent) ? Object.entries(x.parts_percent) : [];
   return {
     tool: number(x.tool) ?? 0,
     law: text(x.law),
     laws: list(x.laws).map(text),
     errors_percent: list(x.errors_percent).map(number),
     total_percent: number(x.total_percent),
+    parts_percent: parts.map(([name, percent]) => [name, number(percent)]),
+    beside: text(x.beside),
     age_ms: number(x.age_ms),
     period_ms: number(x.period_ms),
     missed: number(x.missed),

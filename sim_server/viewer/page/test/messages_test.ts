@@ -67,10 +67,12 @@ test("a text that lacks things, or has them of another type, becomes dashes and 
   assert.deepEqual(state.state.tools[0].q, [1, 0, 0, 0]);
   assert.deepEqual(state.state.tools[1].loads, [[4, 0, 0, 1]]);
   assert.deepEqual(state.state.peers, []);
-  const client = decode('{"client":{"tool":1,"errors_percent":[1,null],"total_percent":4.5,"interventions":{"clamped":2},"states":["fading"]}}');
+  const client = decode('{"client":{"tool":1,"errors_percent":[1,null],"total_percent":4.5,"parts_percent":{"fades":0.5,"limits":null},"interventions":{"clamped":2},"states":["fading"]}}');
   assert.ok(client?.kind === "client");
   assert.deepEqual(client.clients[0].errors_percent, [1, null]);
   assert.equal(client.clients[0].total_percent, 4.5);
+  assert.deepEqual(client.clients[0].parts_percent, [["fades", 0.5], ["limits", null]]);
+  assert.equal(client.clients[0].beside, "");
   assert.deepEqual(client.clients[0].interventions, [["clamped", 2]]);
   assert.deepEqual(client.clients[0].states, ["fading"]);
 });

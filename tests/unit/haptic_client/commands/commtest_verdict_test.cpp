@@ -76,9 +76,10 @@ TEST_CASE("commtest: bursts, pages that never come and a narrow uplink are named
   link.longest_gap_ms = 299;
   CHECK(grade_of(link) == Grade::kWarn);
   link = good();
-  link.surface_named = true;
+  link.drops_large = true;
   CHECK(grade_of(link) == Grade::kFail);
-  link.pages = 1;
+  CHECK_THAT(judge(link).reasons.back(), Catch::Contains("937 bytes") && Catch::Contains("fragments"));
+  link.drops_large = false;
   CHECK(grade_of(link) == Grade::kPass);
   link = good();
   link.sent_mbit_s = 0.8, link.uplink_loss_percent = 50;

@@ -141,6 +141,41 @@ TEST_CASE(
   CHECK(missing.pages == 1);
 }
 
+TEST_CASE("ticks that a slow link left out, and pages of that time, are counted apart from lost ones") {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.pcap";
+  {
+    CaptureOf capture(file);
+    std::uint64_t sequence = 0;
+    for (std::uint64_t tick = 1; tick <= 300; ++tick) {
+      const bool sparse = tick > 100 && tick <= 200;
+      if (sparse && tick % 10 != 0) continue;  // one in ten travels
+      ++sequence;
+      if (sequence == 105) continue;  // lost, with the nine before it, which never travelled
+      if (tick == 50 || tick == 110)
+        capture.page({.version = 5, .page = static_cast<std::uint32_t>(tick)}, tick);
+      ToolState state = state_at(tick, 0);
+      if (!sparse) {
+        state.flags = ToolState::kRequestsSurface;
+        state.pages_taken = tick < 50 ? 0 : tick <= 100 ? 1 : 2;
+      }
+      capture.state(state, sequence);
+    }
+    capture.close();
+  }
+  CapturedSession::Missing missing;
+  std::map<std::uint64_t, std::size_t> pages;
+  const auto ticks = all_ticks(file, 0, &missing);
+  for (const CapturedTick& tick : ticks)
+    if (!tick.pages.empty()) pages[tick.state.tick] = tick.pages.size();
+  CHECK(ticks.size() == 100 + 9 + 100);
+  CHECK(missing.left_out == 8 * 9);
+  CHECK(missing.ticks == 19);
+  CHECK(missing.pages == 0);
+  CHECK(pages == std::map<std::uint64_t, std::size_t>{{50, 1}, {201, 1}});
+  CHECK(missing.undated == 1);
+}
+
 TEST_CASE("ticks whose times jump back, or lie before time began, are left out and counted") {
   const TemporaryFolder folder;
   const auto file = folder.path() / "a.pcap";

@@ -1,4 +1,7 @@
 // Samples that the server flags as not settled: one is rendered, but not for long.
+#include <algorithm>
+#include <tuple>
+
 #include "common/text.h"
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "haptic_client/pipeline/pipeline.h"
@@ -66,10 +69,32 @@ TEST_CASE("a flagged sample among settled ones fades nothing") {
   Session session;
   session.run(1980, 0);
   for (int i = 0; i < 20; ++i) {
-    CHECK_THAT(session.run(66, kInsideOut), WithinRel(2.0, 1e-3));
-    CHECK_THAT(session.run(33, 0), WithinRel(2.0, 1e-3));
+    CHECK_THAT(session.run(33, kInsideOut), WithinRel(2.0, 1e-3));
+    CHECK_THAT(session.run(66, 0), WithinRel(2.0, 1e-3));
   }
+  CHECK_THAT(session.run(66, kInsideOut), WithinRel(2.0, 1e-3));  // and two in a row
+  CHECK_THAT(session.run(33, 0), WithinRel(2.0, 1e-3));
   CHECK(session.pipeline.watchdog().ramped() == 0);
+}
+
+TEST_CASE("samples of which more than a third are flagged fade the force, in whatever order they come") {
+  // ms, and the round in which flagged - settled / 2 of each before, and its own flagged time, are 100 ms.
+  const auto [flagged, settled, round] =
+      GENERATE(std::tuple(66, 33, 2), std::tuple(33, 33, 6), std::tuple(66, 99, 4), std::tuple(99, 66, 2));
+  Session session;
+  session.run(1980, 0);
+  double largest = 0;
+  for (int i = 1; i < 100; ++i) {
+    const double in_doubt = session.run(flagged, kInsideOut);
+    CHECK((session.pipeline.watchdog().ramped() > 0) == (i >= round));
+    const bool told = session.pipeline.doubt() == Doubt::kInsideOut;
+    CHECK(told == (i >= round));
+    const double after = session.run(settled, 0);
+    CHECK(session.pipeline.doubt().has_value() == told);  // told once, not each time
+    if (i >= 80) largest = std::max({largest, in_doubt, after});
+  }
+  // It rises while samples are settled, and for half as long in the flagged ones after them.
+  CHECK(largest <= 2 * 1.5e-3 * settled / Watchdog::kSoftStart);
 }
 
 TEST_CASE("the reason of a flagged force that fades is that of the newest sample") {

@@ -42,7 +42,7 @@ TEST_CASE("a stalled loop does not come back with a blow") {
   Limiter limiter({.max_force = 8, .max_slew = 160});
   CHECK(limit(limiter, {8, 0, 0}, 0.2).norm() == Approx(1.6));  // ten milliseconds' worth
   Watchdog watchdog;
-  CHECK(watchdog.rule(10ms, 0ms, 0.5).gain == Approx(0.01));
+  CHECK(watchdog.rule(10ms, false, 0.5).gain == Approx(0.01));
 }
 
 TEST_CASE("force goes as slowly as it comes, only losing the device and a fault are quicker") {
@@ -145,24 +145,24 @@ TEST_CASE("half a second of a force that no tissue makes latches, a shorter one 
 TEST_CASE("the ladder: 300 ms, 400 ms, and back over a second") {
   Watchdog watchdog;
   double gain = 0;
-  for (int tick = 0; tick < 499; ++tick) gain = watchdog.rule(10ms, 0ms, kDt).gain;
+  for (int tick = 0; tick < 499; ++tick) gain = watchdog.rule(10ms, false, kDt).gain;
   CHECK(gain == Approx(0.998));
-  CHECK(watchdog.rule(10ms, 0ms, kDt).gain == Approx(1));
-  CHECK(watchdog.rule(300ms, 0ms, kDt).gain == Approx(1));
+  CHECK(watchdog.rule(10ms, false, kDt).gain == Approx(1));
+  CHECK(watchdog.rule(300ms, false, kDt).gain == Approx(1));
   double age_ms = 300;
   Watchdog::Ruling ruling;
   while (age_ms < 399) {
     age_ms += 2;
-    ruling = watchdog.rule(from_seconds(age_ms / 1e3), 0ms, kDt);
+    ruling = watchdog.rule(from_seconds(age_ms / 1e3), false, kDt);
     if (age_ms < 399) CHECK(ruling.damper);
   }
   CHECK(ruling.gain == Approx(0).margin(1e-12));
   CHECK(watchdog.ramped() == 1);
-  CHECK(watchdog.rule(10ms, 0ms, kDt).gain == Approx(kDt));
+  CHECK(watchdog.rule(10ms, false, kDt).gain == Approx(kDt));
 }
 
 TEST_CASE("no force before there is a sample") {
   Watchdog watchdog;
-  for (int tick = 0; tick < 100; ++tick) CHECK(watchdog.rule({}, 0ms, kDt).gain == 0);
+  for (int tick = 0; tick < 100; ++tick) CHECK(watchdog.rule({}, false, kDt).gain == 0);
   CHECK(watchdog.ramped() == 0);
 }

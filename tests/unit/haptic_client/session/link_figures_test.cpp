@@ -54,3 +54,28 @@ TEST_CASE("link figures: what the server heard is what it told last") {
   CHECK(figures.uplink.came == 300);
   CHECK(figures.uplink.lost == 200);
 }
+
+TEST_CASE(
+    "link figures: a way drops large datagrams where samples come for 3 s and no page that was requested") {
+  const auto after = [](Time seconds, Time requests_every, int pages) {
+    LinkFigures figures;
+    std::uint64_t number = 0;
+    for (Time t = 5s; t <= 5s + seconds; t += 10ms) {
+      figures.sample({.number = ++number}, t);
+      if (requests_every > 0s && (t - 5s) % requests_every == 0s) figures.requested_pages(t);
+      if (pages-- > 0) figures.page(t);
+    }
+    return figures.drops_large();
+  };
+  CHECK(after(3100ms, 10ms, 0));
+  CHECK(after(3100ms, 250ms, 0));       // at the level plain
+  CHECK_FALSE(after(3000ms, 10ms, 0));  // not yet
+  CHECK_FALSE(after(3100ms, 10ms, 1));  // they come
+  CHECK_FALSE(after(3100ms, 0s, 0));    // none is wanted: the law needs none, or nothing is near
+  CHECK_FALSE(after(3100ms, 1s, 0));    // too few to say
+  LinkFigures silent;                   // nothing comes at all: that is no matter of size
+  silent.sample({.number = 1}, 5s);
+  for (Time t = 5s; t < 15s; t += 10ms) silent.requested_pages(t);
+  CHECK_FALSE(silent.drops_large());
+  CHECK_THAT(large_datagrams_text(), Catch::Contains("fragments") && Catch::Contains("mtu 1280"));
+}

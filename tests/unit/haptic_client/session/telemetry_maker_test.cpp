@@ -81,8 +81,8 @@ TEST_CASE("telemetry: what is felt, by which law, on which device, and the laws 
   Client client(500);
   client.maker.want(true);
   const Telemetry* newest = nullptr;
-  std::array<std::string, 3> names;
-  std::array<float, 3> errors;
+  std::array<std::string, 8> names;
+  std::array<float, 8> errors;
   for (int i = 0; i < 2000; ++i) {
     const Telemetry* message = client.tick(1.5);
     if (message == nullptr) continue;
@@ -91,10 +91,17 @@ TEST_CASE("telemetry: what is felt, by which law, on which device, and the laws 
     newest = message;
   }
   REQUIRE(newest != nullptr);
-  CHECK(names == std::array<std::string, 3>{"constant", "linear_time", ""});
+  CHECK(names == std::array<std::string, 8>{"constant", "linear_time", "", "extrapolation", "outages",
+                                            "fades", "limits", "worst tick"});
   CHECK_THAT(errors[0], WithinAbs(0.0F, 1e-3F));
   // Behind the laws: the mesh, and a soft start of 1 s in the 4 s so far.
   CHECK_THAT(errors[2], WithinRel(30 + 100 * 0.5F / 4, 0.02F));
+  CHECK_THAT(errors[3], WithinAbs(0.0F, 1e-3F));
+  CHECK_THAT(errors[4], WithinAbs(0.0F, 1e-3F));
+  CHECK_THAT(errors[5], WithinRel(100 * 0.5F / 4, 0.08F));
+  CHECK_THAT(errors[6], WithinAbs(0.0F, 1e-3F));
+  CHECK_THAT(errors[7],
+             WithinRel(99.8F, 1e-3F));  // in the first tick of the soft start, 2 ms into its second
   CHECK(text(newest->device) == "falcon");
   CHECK(text(newest->rendered_law) == "constant");
   CHECK(newest->flags == Telemetry::kHasMotors);

@@ -62,6 +62,7 @@ TEST_CASE("page news: nothing of a client that left is said of the next") {
     published.laws = 2;
     published.named = named;
     published.error_percent = error;
+    if (named == 4) published.name = {'f', 'a', 'd', 'e', 's'};
     mailboxes.tools[0].telemetry.push(published);
     hooks.events(now);
   };
@@ -77,9 +78,13 @@ TEST_CASE("page news: nothing of a client that left is said of the next") {
   CHECK(std::isnan(feed.clients[0].errors_percent[1]));  // not told yet
   report(1, 4);
   CHECK(feed.clients[0].errors_percent[1] == 4);
-  CHECK(std::isnan(feed.clients[0].total_percent));
+  CHECK(std::isnan(feed.clients[0].parts_percent[0]));
   report(2, 7);  // behind the laws
-  CHECK(feed.clients[0].total_percent == 7);
+  CHECK(feed.clients[0].parts_percent[0] == 7);
+  report(4, 2);
+  CHECK(feed.clients[0].parts_percent[2] == 2);
+  CHECK(std::string(feed.clients[0].part_names[2].data()) == "fades");
+  report(15, 9);  // more parts than there are: of a client that lies
   CHECK(feed.clients[0].errors_percent[1] == 4);
   hold(false);
   hold(true);

@@ -183,3 +183,19 @@ TEST_CASE("served tools: nothing happens while nobody holds any, and a step does
   served.inputs[0] = {};
   CHECK(served.step().empty());
 }
+
+TEST_CASE("served tools: samples that did not settle are counted for each session") {
+  Served served;
+  std::uint64_t flagged = 0;
+  const auto press = [&](double y) {
+    served.hold(0, 7, y);
+    const auto outcomes = served.step();
+    flagged += (outcomes[0].answer->flags & protocol::ForceSample::kFlagged) != 0 ? 1 : 0;
+    CHECK(outcomes[0].flagged_samples == flagged);
+    CHECK(outcomes[1].flagged_samples == 0);
+  };
+  for (const double y : {0.004, 1e5, 1e5, 0.004, 0.003}) press(y);  // beyond the world, and back
+  CHECK(flagged >= 2);
+  served.hold(0, 9, 0.004);  // another hand
+  CHECK(served.step()[0].flagged_samples == 0);
+}

@@ -296,7 +296,9 @@ TEST_CASE("viewer: what a client tells reaches a page once") {
   client.law = SeenClient::Name{"linear_position"};
   client.law_names = {SeenClient::Name{"constant"}, SeenClient::Name{"linear_position"}};
   client.errors_percent = {12.5F, std::nanf("")};
-  client.total_percent = 50.25F;
+  client.parts_percent = {50.25F, 0.5F, std::nanf("")};
+  client.part_names = {SeenClient::Name{}, SeenClient::Name{"fades"}, SeenClient::Name{"limits"}};
+  client.age_ms = 20;
   client.states = 1;
   client.state_names[0] = SeenClient::Name{"clutched"};
   client.interventions = 1;
@@ -319,8 +321,35 @@ TEST_CASE("viewer: what a client tells reaches a page once") {
   CHECK(published["errors_percent"][0] == 12.5);
   CHECK(published["errors_percent"][1].is_null());
   CHECK(published["total_percent"] == 50.25);
+  CHECK(published["parts_percent"].size() == 2);
+  CHECK(published["parts_percent"]["fades"] == 0.5);
+  CHECK(published["parts_percent"]["limits"].is_null());
+  CHECK_THAT(published["beside"].get<std::string>(), Catch::Contains("20 ms old: late in a damper"));
   CHECK(published["interventions"]["clamped"] == 3);
   CHECK(published["states"] == std::vector<std::string>{"clutched"});
   session.maker->update(session.time);
   CHECK(session.take_all() == 0);
+}
+
+TEST_CASE("viewer: a page learns how many samples did not settle, and of strain in the report's words") {
+  Session session;
+  session.link.greet(false);
+  session.step(1);
+  session.take_all();
+  CHECK(session.last_text()["state"]["strain"] == "");
+  CHECK(session.last_text()["state"]["tools"][0]["flagged_samples"] == 0);
+  StrainRange strain(ElasticLaw::kLinear);
+  strain.add(0.45), strain.add(0.1);
+  for (int buffer = 0; buffer < 3; ++buffer) {  // pictures take turns
+    session.feed->pictures.back().strain = strain;
+    session.feed->pictures.back().tools[0].flagged_samples = 7;
+    session.step(2 + static_cast<std::uint64_t>(buffer), 0.1F * static_cast<float>(buffer));
+  }
+  session.take_all();
+  const auto state = session.last_text()["state"];
+  CHECK(state["tools"][0]["flagged_samples"] == 7);
+  CHECK(state["strain"] == strain.to_text());
+  CHECK_THAT(state["strain"].get<std::string>(), Catch::Contains("strain up to 45 %") &&
+                                                     Catch::Contains("1 of 2") &&
+                                                     Catch::Contains("neo_hookean"));
 }

@@ -1,0 +1,39 @@
+// What the headline of a client's report says of the age of its force.
+#include <nlohmann/json.hpp>
+
+#include "haptic_client/session/whole_error.h"
+#include "tests/support/catch.h"
+
+using namespace palpate;
+using namespace palpate::client;
+
+namespace {
+
+/// A tool's report with 25 samples and 500 ticks a second: 40 + 2 ms of the age are waits.
+Json report_of(double age_p50, double age_p99, bool real_time) {
+  return {{"motion", {{"sample_rate_hz", 25}}},
+          {"force", {{"age_ms", {{"p50", age_p50}, {"p99", age_p99}}}}},
+          {"loop", {{"rate_hz", 500}, {"real_time", real_time}}}};
+}
+
+}  // namespace
+
+TEST_CASE("report: an age that the rates do not explain is told where threads had no real-time priority") {
+  CHECK_FALSE(unexplained_age_ms(report_of(30, 71.9, false)));
+  CHECK(unexplained_age_ms(report_of(30, 72.1, false)) == 72.1);
+  CHECK_FALSE(unexplained_age_ms(report_of(30, 72.1, true)));
+  Json replayed = report_of(30, 100, false);
+  replayed.erase("loop");
+  CHECK_FALSE(unexplained_age_ms(replayed));
+  Json without_samples = report_of(0, 100, false);
+  without_samples["motion"]["sample_rate_hz"] = 0;
+  CHECK_FALSE(unexplained_age_ms(without_samples));
+}
+
+TEST_CASE("report and page name the same parts of the error on the hand") {
+  std::vector<std::string> names, keys;
+  for (const HandError& error : kHandErrors) names.emplace_back(error.name), keys.emplace_back(error.key);
+  CHECK(names == std::vector<std::string>{"", "extrapolation", "outages", "fades", "limits", "worst tick"});
+  CHECK(keys == std::vector<std::string>{"total_percent", "extrapolation_percent", "outages_percent",
+                                         "fades_percent", "limits_percent", "hand_max_percent"});
+}
