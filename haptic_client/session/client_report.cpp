@@ -242,8 +242,11 @@ void print_scores(const Json& tool) {
       "max force", "ns/tick");
   for (const auto& [name, m] : methods.items()) {
     std::string line = fmt::format("          {:{}}", row_name(name, m), width);
-    for (const ScoreColumn& column : kScoreColumns)
-      line += fmt::format("{:{}.{}f}", m[column.key].get<double>(), column.width, column.decimals);
+    for (const ScoreColumn& column : kScoreColumns) {
+      const auto value = m[column.key].get<double>();  // NaN of means over 10 ms, where a tick is as long
+      line += fmt::format("{:>{}}", std::isnan(value) ? "-" : fmt::format("{:.{}f}", value, column.decimals),
+                          column.width);
+    }
     fmt::print("{}   {:>7}\n", line,
                m["ns_per_tick"].is_null() ? "-" : fmt::format("{:.1f}", m["ns_per_tick"].get<double>()));
   }
