@@ -215,7 +215,7 @@ int record(const RecordOptions& options) {
   if (options.remove) cut.planned = removals;
   simulation.set_cut_options(std::move(cut));
   auto studied = cache ? find_studied(*cache, scene) : std::nullopt;
-  if (studied && studied_hz != options.rate_hz) studied->time_step = {};  // of other steps
+  if (studied && studied_hz != options.rate_hz) studied->errors.time_step = {};  // of other steps
   const ErrorOfForce errors(scene, simulation, studied);
   RealTime clock;
   const VirtualLink link{.rate_hz = options.rate_hz,
