@@ -18,13 +18,25 @@ DiscretisationErrors those_by_method(DiscretisationErrors errors, bool deforms, 
   return errors;
 }
 
+/// The surface vertex in the middle of what the first tool can touch, where a trial presses (`find_press`).
+int middle_of_reach(const Simulation& simulation) {
+  std::vector<int> vertices;
+  for (const Triangle& t : simulation.touchable(0)) vertices.insert(vertices.end(), t.begin(), t.end());
+  Vec3 middle = Vec3::Zero();
+  const auto rest = [&](int v) -> const Vec3& { return simulation.rest()[static_cast<std::size_t>(v)]; };
+  for (const int v : vertices) middle += rest(v) / static_cast<double>(vertices.size());
+  return *std::ranges::min_element(vertices, {}, [&](int v) { return (rest(v) - middle).squaredNorm(); });
+}
+
 /// Returns the error by elements of which the table says nothing, by a trial that pressed on such; nothing
 /// where there are none, or they were not tried.
 std::optional<double> tried_error(const Scene& scene, const Simulation& simulation,
                                   const std::optional<ThinTissue>& thin) {
-  if (!thin || !(scene.material->locks() || thin->any())) return {};
+  if (!thin || simulation.touchable(0).empty()) return {};
+  const bool locks = scene.material->locks();
+  if (!locks && !thin->is_thin_at(middle_of_reach(simulation))) return {};
   const auto trial = try_elements(scene, simulation.mesh());
-  if (!trial || !(scene.material->locks() || thin->bears(trial->loads))) return {};
+  if (!trial || !(locks || thin->bears(trial->loads))) return {};
   return trial->percent;
 }
 

@@ -1,5 +1,4 @@
 #pragma once
-#include <algorithm>
 #include <vector>
 
 #include "sim_server/mesh/surface.h"
@@ -18,10 +17,8 @@ class ThinTissue {
   /// O(tetrahedra + surface), with all vertices within two edges of each of the surface.
   ThinTissue(const TetMesh& mesh, const Surface& surface, const std::vector<int>& held);
 
-  /// True if there is any such tissue.
-  bool any() const noexcept {
-    return std::ranges::any_of(thin_, [](const std::vector<Vec3>& normals) { return !normals.empty(); });
-  }
+  /// True if some face at this vertex of the surface is of such tissue.
+  bool is_thin_at(int vertex) const noexcept { return !thin_[static_cast<std::size_t>(vertex)].empty(); }
   /// True if at least half of what a tool loads the surface with presses such tissue through its thickness.
   /// O(loads); does not allocate.
   bool bears(std::span<const VertexLoad> loads) const noexcept;
