@@ -44,8 +44,8 @@ TEST_CASE("explain names the lines of the liver scene that ask for what it build
   // What it held at most for this scene, before the variants, against what the system counted of a process
   // that serves it for a moment: the parts are what that holds more than one that sets nothing up.
   CHECK(said.find("resident") != std::string::npos);
-  Process serving("sim_server", {"run", kScene, "--listen", "127.0.0.1:0", "--viewer", "off", "--no-cache",
-                                 "--seconds", "0.1", "--no-cache"});
+  Process serving("sim_server", {"run", kScene, "--listen", "127.0.0.1:0", "--viewer", "off", "--seconds",
+                                 "0.1", "--no-cache"});
   CHECK(serving.wait() == 0);
   Process idle("sim_server", {"scenes"});
   CHECK(idle.wait() == 0);
