@@ -131,6 +131,18 @@ void require_same_motion(const FromTruth& from, const std::filesystem::path& fil
       file.string(), 1e3 * from.most, options.truth->string());
 }
 
+/// That both captures are of one scene, where both tell of which they are.
+void require_same_scene(const CaptureSurvey& found, const Truth& truth, const std::filesystem::path& file,
+                        const EvaluateOptions& options) {
+  if (!found.scene || !truth.scene() || *found.scene == *truth.scene()) return;
+  fail(
+      "{}: is of another scene than --truth {}, which differs by: {}; record the truth again, of the scene "
+      "of "
+      "the capture: `sim_server record SCENE --trajectory MOTION --rate 2000 --plain --out {}`",
+      file.string(), options.truth->string(), protocol::differences(*found.scene, *truth.scene()),
+      options.truth->string());
+}
+
 void require_scored(const Evaluation& e, const std::filesystem::path& file) {
   if (e.samples < 2 || !(e.seconds > 0))
     fail("{}: has fewer than two force samples; nothing to evaluate", file.string());
@@ -146,6 +158,7 @@ Evaluation run(const std::filesystem::path& file, const std::vector<std::string>
   const CaptureSurvey found = survey(file, [](double) {});
   if (!found.trouble.empty())
     log::warning("{}: {}; what was read until then is evaluated", file.string(), found.trouble);
+  if (truth != nullptr) require_same_scene(found, *truth, file, options);
   Evaluation e = start_evaluation(found, laws, options, truth);
   CapturedSession session(file, e.run);
   std::optional<protocol::ToolState> before;

@@ -173,12 +173,22 @@ void say_how_exact(const Json& capture, const CapturedRun& run, const std::strin
   }
 }
 
+/// A client file may be of another session.
+void say_if_rates_differ(const ReplayOptions& options, double captured_hz, double client_hz) {
+  if (options.client.empty() || options.rate_hz || nominal_rate(captured_hz, client_hz) == client_hz) return;
+  log::warning(
+      "{}: has {:.4g} ticks a second, and {} says `rate_hz = {:g}`: is it the client file of this session? "
+      "What is computed has the ticks of the capture; `--rate {:g}` takes the rate of the file",
+      options.capture.string(), captured_hz, options.client, client_hz, client_hz);
+}
+
 }  // namespace
 
 int replay(const ClientConfig& config, const ReplayOptions& options) {
   const ChosenSession chosen = choose_session(options);
   const CapturedRun& run = chosen.run();
   const double captured_hz = run.ticks_hz(), rate_hz = options.rate_hz.value_or(captured_hz);
+  say_if_rates_differ(options, captured_hz, config.rate_hz);
   const bool exact = captured_hz == 0 || std::abs(rate_hz - captured_hz) <= kSameRate * captured_hz;
   const double ticks_hz = exact ? nominal_rate(captured_hz, config.rate_hz) : rate_hz;
 
@@ -245,6 +255,7 @@ Command replay_command() {
         const std::optional<double>& rate_hz = requested->options.rate_hz;
         if (rate_hz) require_within(*rate_hz, 1, 20000, "--rate", "Hz");
         if (requested->live && rate_hz) fail("--rate: a live replay has the capture's own rate");
+        requested->options.client = requested->overrides.file;
         return (requested->live ? replay_live : replay)(read_config(requested->overrides),
                                                         requested->options);
       }};

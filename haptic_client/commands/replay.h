@@ -13,6 +13,7 @@ namespace palpate::client {
 struct ReplayOptions {
   std::filesystem::path capture;
   std::optional<double> rate_hz;  ///< ticks a second; absent, or within 2 % of the capture's: its own ticks
+  std::string client;             ///< file of the client; empty: all defaults
   std::optional<int> session;     ///< from 1, as listed; absent: the longest
   std::optional<std::filesystem::path> out;     ///< CSV, a row a tick
   std::optional<std::filesystem::path> report;  ///< JSON

@@ -54,7 +54,9 @@ std::optional<std::size_t> CaptureSorter::sort(const CapturedDatagram& captured,
     return sort_states(ticks_of(datagram), header, captured.from);
   if (std::holds_alternative<ForceSample>(datagram.message)) return sort_sample(header, captured.to, true);
   if (std::holds_alternative<SurfacePage>(datagram.message)) return sort_sample(header, captured.to, false);
-  if (std::holds_alternative<Welcome>(datagram.message)) {  // again, in mid-session: it has a number, too
+  if (const auto* welcome = std::get_if<Welcome>(&datagram.message)) {
+    if (const auto scene = print_in(*welcome, captured.from)) scene_ = scene;
+    // Again, in mid-session: it has a number, too.
     if (const Place place = known(captured.to, header.session); place.link != nullptr)
       place.link->down.accept(header.sequence);
   }

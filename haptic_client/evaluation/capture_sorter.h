@@ -6,6 +6,7 @@
 
 #include "protocol/capture.h"
 #include "protocol/replay_window.h"
+#include "protocol/scene_print.h"
 
 namespace palpate::client {
 
@@ -62,6 +63,8 @@ class CaptureSorter {
   std::uint64_t refused() const { return refused_; }  ///< with our magic, but not acceptable
   std::uint64_t omitted() const { return omitted_; }  ///< of too many runs or sessions
   std::optional<int> other_version() const { return other_version_; }
+  /// Scene of a recording in virtual time; nothing of other captures.
+  const std::optional<protocol::ScenePrint>& scene() const { return scene_; }
 
  private:
   struct Place {
@@ -81,6 +84,7 @@ class CaptureSorter {
   std::vector<CapturedRun> runs_;
   std::uint64_t ours_ = 0, refused_ = 0, omitted_ = 0;
   std::optional<int> other_version_;
+  std::optional<protocol::ScenePrint> scene_;
 };
 
 }  // namespace palpate::client

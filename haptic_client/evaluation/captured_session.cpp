@@ -35,9 +35,14 @@ CaptureSurvey survey(const std::filesystem::path& file, const ReadingProgress& p
         "it captured at the server's UDP port (45130, if you did not choose another)?",
         file.string(), reader.packets(), sorter.ours());
   }
-  return {sorter.runs(),    reader.packets(), sorter.ours(),
-          sorter.refused(), sorter.omitted(), reader.packets() - sorter.ours() - sorter.refused(),
-          reader.trouble()};
+  return {.runs = sorter.runs(),
+          .packets = reader.packets(),
+          .ours = sorter.ours(),
+          .refused = sorter.refused(),
+          .omitted = sorter.omitted(),
+          .other = reader.packets() - sorter.ours() - sorter.refused(),
+          .scene = sorter.scene(),
+          .trouble = reader.trouble()};
 }
 
 CapturedSession::CapturedSession(const std::filesystem::path& file, std::size_t run)

@@ -12,6 +12,7 @@ constexpr double kSlowest = 200;  // Hz
 
 Truth::Truth(const std::filesystem::path& file, const std::function<void(double fraction)>& progress) {
   const CaptureSurvey found = survey(file, progress);
+  scene_ = found.scene;
   const auto longest =
       std::ranges::max_element(found.runs, [](const auto& a, const auto& b) { return a.ticks < b.ticks; });
   CapturedSession session(file, static_cast<std::size_t>(longest - found.runs.begin()));

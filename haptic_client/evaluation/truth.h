@@ -7,6 +7,7 @@
 #include "common/force_jumps.h"
 #include "common/time.h"
 #include "common/types.h"
+#include "protocol/scene_print.h"
 
 namespace palpate::client {
 
@@ -24,6 +25,8 @@ class Truth {
   /// Returns how far from `p` (m, world) the tool of the truth was at `t`; none outside its samples.
   std::optional<double> distance(const Vec3& p, Time t) const noexcept;
   double rate_hz() const noexcept { return rate_hz_; }
+  /// Scene that it was recorded of in virtual time; nothing where it was not.
+  const std::optional<protocol::ScenePrint>& scene() const noexcept { return scene_; }
   /// Snaps of the force over the whole capture; nothing where it has fewer than 2000 samples a second.
   std::optional<ForceJumps> snaps() const;
 
@@ -36,6 +39,7 @@ class Truth {
   std::vector<Point> points_;
   mutable std::size_t hint_ = 0;
   double rate_hz_ = 0;
+  std::optional<protocol::ScenePrint> scene_;
 };
 
 }  // namespace palpate::client

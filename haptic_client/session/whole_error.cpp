@@ -26,7 +26,7 @@ std::string how_of(const DiscretisationError& error) {
              "DIR` "
              "measures it";
     case ErrorSource::kMeasured:
-      return "measured by a study of this scene, along its motion";
+      return "measured by a study of this scene, within a radius of the tool of where it pressed";
     case ErrorSource::kNone:
       return "none: the force follows from the place of the tool alone";
   }

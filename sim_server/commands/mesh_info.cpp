@@ -29,6 +29,15 @@ void print_sizes(const TetMesh& mesh) {
   if (const std::string odd = odd_size(mesh); !odd.empty()) log::warning("{}", odd);
 }
 
+/// The groups of the file: a scene names those of the surface (`surface_tag`).
+void print_groups(const TetMesh& mesh) {
+  for (const auto& [name, triangles] : mesh.tagged_triangles)
+    fmt::print("  surface_tag         \"{}\": {} triangles\n", name, triangles.size());
+  for (const auto& [name, tetrahedra] : mesh.volume_tags)
+    fmt::print("  group of volumes    \"{}\": {} tetrahedra; a scene takes them by a box or ball\n", name,
+               tetrahedra);
+}
+
 void print_faults(const MeshFaults& faults) {
   if (faults.found.empty()) fmt::print("  faults              none\n");
   for (const MeshFault& fault : faults.found) {
@@ -52,6 +61,7 @@ int print_mesh_info(const std::string& file) {
                mesh.tetrahedra.size());
   } else {
     print_sizes(mesh);
+    print_groups(mesh);
   }
   print_faults(faults);
   std::fflush(stdout);  // before the error

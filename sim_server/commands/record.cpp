@@ -14,6 +14,7 @@
 #include "sim_server/commands/explain.h"
 #include "sim_server/commands/resection_log.h"
 #include "sim_server/explicit/mass_scaling.h"
+#include "sim_server/scene/scene_print.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/virtual_session.h"
 #include "sim_server/study/studied_errors.h"
@@ -200,8 +201,7 @@ int record(const RecordOptions& options) {
   const Trajectory& motion = motions[options.tool - 1];
   const std::uint64_t ticks = ticks_of(motion, options, ticks_hz);
   check_record_files(options, scene);
-  const std::vector<Removal> removals =
-      options.remove ? read_removals(*options.remove) : std::vector<Removal>();
+  const ListedRemovals listed = options.remove ? read_removals(*options.remove) : ListedRemovals();
   AtomicFile out(options.out, Contents::kCapture);
   protocol::CaptureWriter capture(out.path());
   say_what_is_lost(motion, options, ticks_hz);
@@ -210,12 +210,12 @@ int record(const RecordOptions& options) {
   const auto condensed = open_condensed(options.cache, scene);
   Simulation simulation(scene, std::ref(progress), cache ? &*cache : nullptr,
                         condensed ? &*condensed : nullptr);
-  if (options.remove) require_removable(removals, *options.remove, simulation);
+  if (options.remove) require_removable(listed, *options.remove, simulation);
   CutOptions cut{.keeps_log = options.resection.has_value(), .waits_for_background = !options.real_time};
-  if (options.remove) cut.planned = removals;
+  if (options.remove) cut.planned = listed.removals;
   simulation.set_cut_options(std::move(cut));
   auto studied = cache ? find_studied(*cache, scene) : std::nullopt;
-  if (studied && studied_hz != options.rate_hz) studied->time_step = {};  // of other steps
+  if (studied && studied_hz != options.rate_hz) studied->errors.time_step = {};  // of other steps
   const ErrorOfForce errors(scene, simulation, studied);
   RealTime clock;
   const VirtualLink link{.rate_hz = options.rate_hz,
@@ -223,9 +223,9 @@ int record(const RecordOptions& options) {
                          .delay = from_seconds(options.delay_ms / 1e3),
                          .parts = options.parts,
                          .tool = options.tool - 1,
+                         .scene = print_of(scene, simulation.mesh()),
                          .clock = options.real_time ? &clock : nullptr};
-  VirtualSession session(simulation, motions, scene.tools[options.tool - 1].shape.radius, link, capture,
-                         &errors);
+  VirtualSession session(simulation, motions, link, capture, &errors);
   const Time start = now();
   run_session(session, ticks, capture, options, progress);
   set_aside({{"--out", options.out}, {"--resection", options.resection}, {"--removals", options.removals}},
@@ -260,7 +260,7 @@ Command record_command() {
                  &options->trajectories,
                  {.required = true, .one_at_a_time = true}},
                 {"--tool",
-                 "Which tool's session the capture holds, from 1",
+                 "The tool whose session stands first in the capture, and in the figures, from 1",
                  &options->tool,
                  {.shows_default = true, .within = Bounds{1, 8}}},
                 {"--rate",

@@ -12,9 +12,9 @@ namespace palpate::sim {
 struct RecordOptions {
   std::filesystem::path scene, out;
   std::vector<std::filesystem::path> trajectories;  ///< of the tools of the scene, in order
-  std::size_t tool = 1;                             ///< whose session is captured, from 1
-  double rate_hz = 30;                              ///< steps a second, [1, 20000]
-  double delay_ms = 0;  ///< from reading the tool to having its force in the client, ms, [0, 10000]
+  std::size_t tool = 1;  ///< whose session stands first in the capture and in the figures, from 1
+  double rate_hz = 30;   ///< steps a second, [1, 20000]
+  double delay_ms = 0;   ///< from reading the tool to having its force in the client, ms, [0, 10000]
   std::optional<double> ticks_hz;  ///< tool states a second, at least `rate_hz`; absent: 500 or `rate_hz`
   std::optional<double> seconds;   ///< absent: the motion of that tool once
   bool parts = true;       ///< whether the samples carry all they can: tangents, surface, a second place

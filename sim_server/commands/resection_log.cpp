@@ -47,6 +47,14 @@ std::string row_text(const ResectionRow& row, bool planned) {
       all.time_at_end);
 }
 
+Vec3 centre_of_number(const TetMesh& mesh, int tetrahedron) {
+  return centre_of(mesh, mesh.tetrahedra[static_cast<std::size_t>(tetrahedron)]);
+}
+
+std::string place_text(const Vec3& x) {
+  return fmt::format("({:.4g}, {:.4g}, {:.4g})", x.x(), x.y(), x.z());
+}
+
 /// Returns how far a cut is from the plan, where there is one.
 std::string away(bool planned, double metres, const char* how) {
   return planned ? fmt::format(", {:.1f} mm from the plan {}", 1e3 * metres, how) : "";
@@ -111,39 +119,54 @@ void write_resection(const std::filesystem::path& file, const Simulation& simula
 void write_removals(const std::filesystem::path& file, const Simulation& simulation) {
   AtomicFile atomic_file(file, Contents::kTable);
   std::ofstream out(atomic_file.path());
-  out << "t_s,tetrahedron\n";
+  out << "t_s,tetrahedron,x_m,y_m,z_m\n";
   const TissueCut* const cut = simulation.cut();
-  for (const Removal& removal : cut ? cut->removals() : std::span<const Removal>())
-    out << fmt::format("{:.9f},{}\n", removal.t, removal.tetrahedron);
+  for (const Removal& removal : cut ? cut->removals() : std::span<const Removal>()) {
+    const Vec3 centre = centre_of_number(simulation.mesh(), removal.tetrahedron);
+    out << fmt::format("{:.9f},{},{:.9f},{:.9f},{:.9f}\n", removal.t, removal.tetrahedron, centre.x(),
+                       centre.y(), centre.z());
+  }
   out.close();
   if (!out) fail_at_run_time("{}: could not be written; is the disk full?", file.string());
   atomic_file.commit();
 }
 
-std::vector<Removal> read_removals(const std::filesystem::path& file) {
-  const std::vector<std::string> columns{"t_s", "tetrahedron"};
-  const auto values = read_csv_columns(file, columns);
-  std::vector<Removal> removals;
+ListedRemovals read_removals(const std::filesystem::path& file) {
+  const CsvTable table(file);
+  std::vector<std::string> columns{"t_s", "tetrahedron"};
+  const bool has_centres = table.has("x_m");
+  if (has_centres) columns.insert(columns.end(), {"x_m", "y_m", "z_m"});
+  const auto values = table.columns(columns);
+  ListedRemovals list;
   for (std::size_t row = 0; row < values[0].size(); ++row) {
     const double t = values[0][row], number = values[1][row];
-    if (row > 0 && t < removals.back().t)
+    if (row > 0 && t < list.removals.back().t)
       fail("{}: column t_s must not decrease, but data row {} has {:g} after {:g}", file.string(), row + 1, t,
-           removals.back().t);
+           list.removals.back().t);
     if (!(number >= 0 && number <= std::numeric_limits<int>::max() && number == std::floor(number)))
       fail("{}: data row {} names tetrahedron {:g}, which no mesh has", file.string(), row + 1, number);
-    removals.push_back({t, static_cast<int>(number)});
+    list.removals.push_back({t, static_cast<int>(number)});
+    if (has_centres) list.centres.emplace_back(values[2][row], values[3][row], values[4][row]);
   }
-  return removals;
+  return list;
 }
 
-void require_removable(std::span<const Removal> removals, const std::filesystem::path& file,
+void require_removable(const ListedRemovals& list, const std::filesystem::path& file,
                        const Simulation& simulation) {
+  constexpr double kRounding = 1e-8;  // m: the list has nanometres
   const auto tetrahedra = static_cast<int>(simulation.mesh().tetrahedra.size());
-  for (std::size_t row = 0; row < removals.size(); ++row) {
-    const int number = removals[row].tetrahedron;
+  for (std::size_t row = 0; row < list.removals.size(); ++row) {
+    const int number = list.removals[row].tetrahedron;
     if (number >= tetrahedra)
       fail("{}: data row {} names tetrahedron {}, and the mesh has 0 to {}; is it of another mesh?",
            file.string(), row + 1, number, tetrahedra - 1);
+    const Vec3 centre = centre_of_number(simulation.mesh(), number);
+    if (!list.centres.empty() && !((list.centres[row] - centre).norm() <= kRounding))
+      fail(
+          "{}: is of another mesh: data row {} has the middle of tetrahedron {} at {} m, the mesh of this "
+          "scene "
+          "at {} m; make it again with this mesh: `sim_server record ... --removals FILE`",
+          file.string(), row + 1, number, place_text(list.centres[row]), place_text(centre));
     if (!simulation.resection()->remaining().is_removable(number))
       fail(
           "{}: data row {} names tetrahedron {}, which the scene's [cutting] does not let go; is it of "

@@ -23,10 +23,16 @@ void write_resection(const std::filesystem::path& file, const Simulation& simula
 /// The tetrahedra that went, as `--removals` writes and `--remove` reads them. Throws `Error`, of a file that
 /// is none, or, where it is to be used, that names another mesh's (file and row).
 void write_removals(const std::filesystem::path& file, const Simulation& simulation);
-std::vector<Removal> read_removals(const std::filesystem::path& file);
+/// List of removals, and where the middle of each tetrahedron was at rest, m; none in a list of no such
+/// columns.
+struct ListedRemovals {
+  std::vector<Removal> removals;
+  std::vector<Vec3> centres;
+};
+ListedRemovals read_removals(const std::filesystem::path& file);
 
 /// Checks that a simulation may remove these. Throws `Error`, naming the file and row, where it may not.
-void require_removable(std::span<const Removal> removals, const std::filesystem::path& file,
+void require_removable(const ListedRemovals& list, const std::filesystem::path& file,
                        const Simulation& simulation);
 
 /// Writes the final state of the resection, for a report; null: nothing can be cut.

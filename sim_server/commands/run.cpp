@@ -341,7 +341,7 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
   warn_if_slow(scene);
   warn_if_out_of_reach(simulation, scene);
   auto studied = cache ? find_studied(*cache, scene) : std::nullopt;
-  if (studied && scene.rate_hz == 0) studied->time_step = {};  // steps are as clients ask for them
+  if (studied && scene.rate_hz == 0) studied->errors.time_step = {};  // steps are as clients ask for them
   ErrorOfForce errors(scene, simulation, studied);
   warn_if_coarse(errors, simulation, scene);
   Json report = describe_scene(scene, simulation, now() - begin, progress);

@@ -181,7 +181,10 @@ void keep_for_sessions(const CacheOptions& where, const StudyOptions& options, R
   const auto measured = [](double percent) {
     return DiscretisationError{ErrorSource::kMeasured, static_cast<float>(percent)};
   };
-  keep_studied(*cache, scene, {measured(split.mesh), measured(split.time_step)}, seconds);
+  std::optional<StudiedErrors> studied = pressed_in(by_own);
+  if (!studied) return;
+  studied->errors = {measured(split.mesh), measured(split.time_step)};
+  keep_studied(*cache, scene, *studied, seconds);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "protocol/udp_socket.h"
 #include "sim_server/commands/live_view.h"
 #include "sim_server/commands/pictures.h"
+#include "sim_server/scene/scene_print.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/captured_forces.h"
 #include "sim_server/serving/captured_rerun.h"
@@ -106,6 +107,16 @@ void make_session(const std::filesystem::path& capture, std::size_t answers, con
                  1e-6 * static_cast<double>(session.bytes().size()));
 }
 
+/// That the capture is of this scene, where it tells of which it is.
+void require_scene_of(const CapturedForces& forces, const ViewOptions& options, const Scene& scene,
+                      const Simulation& simulation) {
+  if (!forces.scene) return;
+  const std::string differing = protocol::differences(*forces.scene, print_of(scene, simulation.mesh()));
+  if (differing.empty()) return;
+  fail("{}: {} was recorded of another scene, which differs by: {}; give the scene file of the recording",
+       options.scene->string(), options.capture.string(), differing);
+}
+
 void report_how_far_off(const CapturedRerun& rerun, const std::filesystem::path& file, const Scene& scene) {
   log::info("{}: stepped again, its forces are within {:.3g} N of those captured, the largest {:.3g} N",
             file.string(), rerun.off(), rerun.largest());
@@ -144,6 +155,7 @@ int view_capture(const ViewOptions& options) {
     const auto condensed = open_condensed(options.cache, *scene);
     simulation.emplace(*scene, std::ref(progress), cache ? &*cache : nullptr,
                        condensed ? &*condensed : nullptr);
+    require_scene_of(forces, options, *scene, *simulation);
     simulation->set_cut_options({.keeps_log = false});
     facts = facts_of(*scene, *simulation);
   } else {

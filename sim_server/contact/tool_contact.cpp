@@ -401,10 +401,12 @@ double ToolContact::surface_strain(std::span<const Vec3> positions,
   return std::max(1 - std::sqrt(least), std::sqrt(most) - 1);
 }
 
-double ToolContact::least_area(std::span<const Vec3> positions, std::span<const Vec3> rest) const noexcept {
+double ToolContact::least_area(std::span<const Vec3> positions, std::span<const Vec3> rest,
+                               std::span<const char> floating) const noexcept {
   const std::span<const int> vertices = finder_.vertices();
   double least = 1;
   for (const Triangle& t : patch_.triangles) {
+    if (!floating.empty() && floating[static_cast<std::size_t>(vertices[t[0]])] != 0) continue;
     const auto area = [&](std::span<const Vec3> at) -> Vec3 {
       const Vec3& corner = at[vertices[t[0]]];
       return (at[vertices[t[1]]] - corner).cross(at[vertices[t[2]]] - corner);

@@ -130,8 +130,10 @@ class ToolContact {
   /// Returns the largest change of length of the surface's edges near it, by their length at rest: strain.
   double surface_strain(std::span<const Vec3> positions, std::span<const Vec3> rest) const noexcept;
   /// Returns the smallest area of the surface's faces near it, seen along their normals at rest, by their
-  /// area at rest: 1 of tissue at rest, below 0 of a face that is turned over.
-  double least_area(std::span<const Vec3> positions, std::span<const Vec3> rest) const noexcept;
+  /// area at rest: 1 of tissue at rest, below 0 of a face that is turned over. `floating`: 1 for each vertex
+  /// of a part that turns as one piece, whose faces are left out; empty: none does.
+  double least_area(std::span<const Vec3> positions, std::span<const Vec3> rest,
+                    std::span<const char> floating) const noexcept;
   /// Away from the tissue, on which it has no load any more: no force.
   void separate() noexcept;
   /// Adds the tangent to `force`. Of the last place where contact was solved: before another is asked for.

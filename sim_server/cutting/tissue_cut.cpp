@@ -72,10 +72,24 @@ bool TissueCut::start_step(std::span<const ToolInput> inputs, double time, doubl
     organ.tissue.note_same_place();  // of vertices that this exposed, too
   }
   const bool parted = !options_.planned && part_by_blades(inputs, dt, organ);
-  if ((parted || !removed.empty()) && resection_.totals().loose_pieces > 0)
-    organ.tissue.traits.cuttable->release(resection_.floating(), resection_.remaining());
+  if ((parted || !removed.empty()) && resection_.totals().loose_pieces > 0) let_float(organ);
   if (resection_.version() != touchable_version_) change_surface(organ);
   return publish(inputs, organ);
+}
+
+/// Lets parts float that nothing holds any more.
+void TissueCut::let_float(CutOrgan& organ) {
+  const CutMesh& remaining = resection_.remaining();
+  const std::vector<std::vector<int>> parts = resection_.floating();
+  organ.tissue.traits.cuttable->release(parts, remaining);
+  floating_.assign(parts.empty() ? 0 : organ.rest.size(), 0);
+  for (const std::vector<int>& tetrahedra : parts) {
+    for (const int t : tetrahedra) {
+      for (const int v : organ.mesh.tetrahedra[static_cast<std::size_t>(t)]) {
+        if (remaining.number_of(v) >= 0) floating_[static_cast<std::size_t>(remaining.number_of(v))] = 1;
+      }
+    }
+  }
 }
 
 /// Updates the surface published to clients.

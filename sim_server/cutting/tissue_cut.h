@@ -69,6 +69,8 @@ class TissueCut {
   /// True while a blade of this tool resists.
   bool resists(std::size_t tool) const { return blades_[tool] && !blades_[tool]->force.isZero(0); }
   const Resection& resection() const { return resection_; }
+  /// Returns 1 for each surface vertex of a part that floats, which turns and flies; empty: none floats.
+  std::span<const char> floating() const { return floating_; }
   /// Surface published to clients near the tools; null: none now.
   const std::shared_ptr<const PublishedSurface>& published() const { return published_; }
   /// Rows of the steps with a tip that was hot.
@@ -95,11 +97,13 @@ class TissueCut {
   bool part_by_blades(std::span<const ToolInput> inputs, double dt, CutOrgan& organ);
   bool part_by(std::size_t tool, double dt, CutOrgan& organ);
   void follow_rest(const Separated& separated, std::size_t tool, CutOrgan& organ);
+  void let_float(CutOrgan& organ);
   void change_surface(CutOrgan& organ);
   bool publish(std::span<const ToolInput> inputs, CutOrgan& organ);
   void count(const CuttableModel::Removed& lost);
 
   Resection resection_;
+  std::vector<char> floating_ = {};  // of surface vertices
   std::vector<ToolSettings> tools_;
   double toughness_;  // J/m^2
   CutOptions options_;

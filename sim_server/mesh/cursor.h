@@ -57,6 +57,8 @@ class Cursor {
   Number text(const char* what) {
     start_token();
     Number value{};
+    if (at_ + 1 < bytes_.size() && bytes_[at_] == '+' && bytes_[at_ + 1] != '-')
+      ++at_;  // from_chars takes none
     const char* const last = bytes_.data() + bytes_.size();
     const auto [end, error] = std::from_chars(bytes_.data() + at_, last, value);
     const bool entire = end == last || is_space(*end);

@@ -26,7 +26,6 @@ namespace {
 // Bytes for each of the file, checks of the mesh included; measured: 5 to 7.5.
 constexpr double kReadingTakes = 8;
 constexpr double kSmallFile = 1e6;  // bytes; to ask for the free memory would take longer than to read it
-enum GmshElement : std::int64_t { kGmshTriangle = 2, kGmshTetrahedron = 4 };
 
 /// Returns how many nodes an element of Gmsh's `type` has; 0 for a type this reader has never heard of.
 int nodes_of_type(std::int64_t type) {
@@ -45,6 +44,15 @@ bool is_other_solid(std::int64_t type) {
 
 bool is_curved_tetrahedron(std::int64_t type) {
   return type == 11 || (type >= 29 && type <= 31);
+}
+
+/// Corners come first, whatever the order of the element.
+bool is_tetrahedron(std::int64_t type) {
+  return type == 4 || is_curved_tetrahedron(type);
+}
+
+bool is_triangle(std::int64_t type) {
+  return type == 2 || type == 9 || (type >= 20 && type <= 25);
 }
 
 /// Collects a mesh from the sections of one file.
@@ -68,10 +76,15 @@ class MeshReader {
     tag_surfaces();
     return std::move(all_);
   }
+  /// Number of tetrahedra that were read by their corners, as they have more nodes.
+  std::size_t curved() const { return curved_; }
 
  private:
+  enum Dimension { kSurface = 2, kVolume = 3 };
+
   void format() {
-    cursor_.line();  // $MeshFormat, as the caller has seen
+    std::string name = cursor_.section();
+    for (; name != "MeshFormat"; name = cursor_.section()) cursor_.skip_section(name);
     const auto version = cursor_.text<double>("the version of the format");
     const auto binary = cursor_.text<int>("0 (text) or 1 (binary)");
     const auto real_size = cursor_.text<int>("the size of a real number");
@@ -94,7 +107,12 @@ class MeshReader {
     if (name == "PhysicalNames") {
       physical_names();
     } else if (name == "Entities" && is_41_) {
-      entities();
+      entities(false);
+    } else if (name == "PartitionedEntities" && is_41_) {
+      cursor_.number("the number of partitions");
+      const auto ghosts = cursor_.size(cursor_.number("the number of ghost entities"), 2, "ghost entities");
+      for (std::size_t i = 0; i < 2 * ghosts; ++i) cursor_.integer("a ghost entity or its partition");
+      entities(true);
     } else if (name == "Nodes") {
       if (has_nodes_) cursor_.wrong("a second $Nodes");
       is_41_ ? nodes_41() : nodes_22();
@@ -120,21 +138,31 @@ class MeshReader {
       const std::string_view line = cursor_.line();
       const std::size_t open = line.find('"'), close = line.rfind('"');
       if (open == close) cursor_.wrong("expected the name of physical group {} in double quotes", tag);
-      if (dimension == 2) name_of_physical_[tag] = line.substr(open + 1, close - open - 1);
+      name_of_physical_[{dimension, tag}] = line.substr(open + 1, close - open - 1);
     }
   }
 
-  void entities() {
+  /// The entities that the elements name: of a partitioned file the parts of those before.
+  void entities(bool partitioned) {
     std::array<std::size_t, 4> counts{};  // points, curves, surfaces, volumes
     for (std::size_t& count : counts)
       count = cursor_.size(cursor_.number("a number of entities"), 5, "entities");
     for (int dimension = 0; dimension < 4; ++dimension) {
       for (std::size_t i = 0; i < counts[dimension]; ++i) {
         const std::int64_t tag = cursor_.integer("the number of an entity");
-        std::vector<std::int64_t> physicals = entity_physicals(dimension);
-        if (dimension == 2) physicals_of_entity_[tag] = std::move(physicals);
+        if (partitioned) partitions_of_entity();
+        physicals_of_entity_[{dimension, tag}] = entity_physicals(dimension);
       }
     }
+  }
+
+  /// Of which entity a part is, and in which partitions.
+  void partitions_of_entity() {
+    cursor_.integer("the dimension of a parent entity");
+    cursor_.integer("the number of a parent entity");
+    const std::int64_t count = cursor_.number("the number of partitions of an entity");
+    cursor_.size(count, 1, "partitions");
+    for (std::int64_t i = 0; i < count; ++i) cursor_.integer("a partition");
   }
 
   /// The rest of an entity: where it is (a point, or a box), its physical tags, the entities around it.
@@ -244,26 +272,31 @@ class MeshReader {
 
   /// Reads the nodes of an element and keeps what matters.
   void element(std::int64_t type, std::int64_t group) {
-    if (is_curved_tetrahedron(type)) {
-      cursor_.wrong("tetrahedra of higher order (type {}); mesh with order 1: `gmsh -3 -order 1 MODEL.geo`",
-                    type);
-    }
     const int count = nodes_of_type(type);
     if (is_other_solid(type)) {
       cursor_.wrong("hexahedra, prisms or pyramids (type {}); mesh the solid with tetrahedra only", type);
     }
     if (count == 0) cursor_.wrong("unknown element type {}; save tetrahedra and triangles only", type);
-    if (type == kGmshTetrahedron) {
-      Tetrahedron t{};
-      for (int& vertex : t) vertex = node_index();
-      // Format 2.2 repeats an element for each physical group it is in.
-      if (all_.tetrahedra.empty() || all_.tetrahedra.back() != t) all_.tetrahedra.push_back(t);
-    } else if (type == kGmshTriangle) {
+    int corners = 0;
+    if (is_tetrahedron(type)) {
+      corners = 4;
+      tetrahedron(type, group);
+    } else if (is_triangle(type)) {
+      corners = 3;
       std::vector<int>& vertices = vertices_of_group_[group];
-      for (int i = 0; i < count; ++i) vertices.push_back(node_index());
-    } else {
-      for (int i = 0; i < count; ++i) cursor_.number("a node of an element");
+      for (int i = 0; i < corners; ++i) vertices.push_back(node_index());
     }
+    for (int i = corners; i < count; ++i) cursor_.number("a node of an element");
+  }
+
+  void tetrahedron(std::int64_t type, std::int64_t group) {
+    Tetrahedron t{};
+    for (int& vertex : t) vertex = node_index();
+    ++tetrahedra_of_group_[group];
+    // Format 2.2 repeats an element for each physical group it is in.
+    if (!all_.tetrahedra.empty() && all_.tetrahedra.back() == t) return;
+    all_.tetrahedra.push_back(t);
+    curved_ += is_curved_tetrahedron(type) ? 1 : 0;
   }
 
   int node_index() {
@@ -277,18 +310,23 @@ class MeshReader {
 
   void tag_surfaces() {
     for (const auto& [group, nodes] : vertices_of_group_) {
-      const std::vector<std::int64_t> all_physicals = physicals(group);
+      const std::vector<std::int64_t> all_physicals = physicals(kSurface, group);
       require_room_for(all_physicals.size(), nodes.size() / 3);
       for (const std::int64_t physical : all_physicals) {
         if (physical == 0) continue;  // Gmsh's way to say "in no physical group"
-        std::vector<int>& vertices = all_.surface_tags[tag_name(physical)];
+        std::vector<int>& vertices = all_.surface_tags[tag_name(kSurface, physical)];
         vertices.insert(vertices.end(), nodes.begin(), nodes.end());
-        std::vector<Triangle>& triangles = all_.tagged_triangles[tag_name(physical)];
+        std::vector<Triangle>& triangles = all_.tagged_triangles[tag_name(kSurface, physical)];
         for (std::size_t k = 0; k + 2 < nodes.size(); k += 3)
           triangles.push_back({nodes[k], nodes[k + 1], nodes[k + 2]});
       }
     }
     sort_tags(all_);
+    for (const auto& [group, count] : tetrahedra_of_group_) {
+      for (const std::int64_t physical : physicals(kVolume, group)) {
+        if (physical != 0) all_.volume_tags[tag_name(kVolume, physical)] += count;
+      }
+    }
   }
 
   /// Each physical group of an entity keeps all triangles of that: a short list of both must not ask for more
@@ -301,15 +339,15 @@ class MeshReader {
                     triangles, groups);
   }
 
-  std::vector<std::int64_t> physicals(std::int64_t group) const {
+  std::vector<std::int64_t> physicals(Dimension dimension, std::int64_t group) const {
     if (!is_41_) return {group};
-    const auto entity = physicals_of_entity_.find(group);
+    const auto entity = physicals_of_entity_.find({dimension, group});
     return entity == physicals_of_entity_.end() ? std::vector<std::int64_t>{} : entity->second;
   }
 
-  std::string tag_name(std::int64_t physical) const {
+  std::string tag_name(Dimension dimension, std::int64_t physical) const {
     const std::int64_t tag = std::abs(physical);  // a minus turns the normals; ours come from the tetrahedra
-    const auto name = name_of_physical_.find(tag);
+    const auto name = name_of_physical_.find({dimension, tag});
     return name == name_of_physical_.end() ? fmt::format("{}", tag) : name->second;
   }
 
@@ -319,10 +357,13 @@ class MeshReader {
   std::vector<std::int64_t> node_numbers_;              // of each vertex, in file order
   std::vector<std::pair<std::int64_t, int>> index_of_;  // node number, vertex; sorted
   TetMesh all_;                                         // every node; no tags yet
-  // Of triangles. A group is what elements name: an entity in 4.1, directly a physical tag in 2.2.
+  // A group is what elements name: an entity in 4.1, directly a physical tag in 2.2.
   std::map<std::int64_t, std::vector<int>> vertices_of_group_;
-  std::map<std::int64_t, std::vector<std::int64_t>> physicals_of_entity_;
-  std::map<std::int64_t, std::string> name_of_physical_;  // of dimension 2
+  std::map<std::int64_t, std::size_t> tetrahedra_of_group_;
+  std::size_t curved_ = 0;
+  // By dimension and number.
+  std::map<std::pair<int, std::int64_t>, std::vector<std::int64_t>> physicals_of_entity_;
+  std::map<std::pair<int, std::int64_t>, std::string> name_of_physical_;
 };
 
 std::string read_bytes(const std::filesystem::path& file) {
@@ -341,14 +382,25 @@ std::string read_bytes(const std::filesystem::path& file) {
   return bytes;
 }
 
+/// True for a file that begins as Gmsh's do, or with a comment before that.
+bool is_gmsh(std::string_view bytes) {
+  return bytes.starts_with("$MeshFormat") ||
+         (bytes.starts_with("$Comments") && bytes.find("\n$MeshFormat") != std::string_view::npos);
+}
+
 }  // namespace
 
 CheckedMesh check_mesh(const std::filesystem::path& file, double scale) {
   const std::string bytes = read_bytes(file);
-  if (!bytes.starts_with("$MeshFormat")) fail_other_format(file, bytes);
-  CheckedMesh checked{MeshReader(file.string(), bytes).read(), {}};
+  if (!is_gmsh(bytes)) fail_other_format(file, bytes);
+  MeshReader reader(file.string(), bytes);
+  CheckedMesh checked{reader.read(), {}};
   for (Vec3& x : checked.mesh.vertices) x *= scale;
   checked.faults = mend(checked.mesh);
+  if (reader.curved() > 0)
+    checked.faults.found.push_back({Cure::kMended, reader.curved(), "tetrahedra of higher order",
+                                    "a tetrahedron has nodes between its corners",
+                                    "read by their corners, with straight edges"});
   return checked;
 }
 

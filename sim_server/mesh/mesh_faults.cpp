@@ -138,6 +138,20 @@ std::string unsound(const TetMesh& mesh, std::size_t e, const char* how) {
                      text(x[t[2]]), text(x[t[3]]));
 }
 
+/// Turns all tetrahedra round where all are inverted: then the file lists vertices in another order, and
+/// nothing is wrong with the places. A single one may be a slip.
+void turn_round(TetMesh& mesh, Finds& finds) {
+  const auto is_inverted = [&](const Tetrahedron& t) {
+    return named_twice(t) < 0 && is_finite(mesh, t) && six_volumes(mesh, t) < 0;
+  };
+  if (mesh.tetrahedra.size() < 2 || !std::ranges::all_of(mesh.tetrahedra, is_inverted)) return;
+  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
+    std::swap(mesh.tetrahedra[e][2], mesh.tetrahedra[e][3]);
+    finds.add(Cure::kMended, "tetrahedra the other way round", "turned round",
+              [&] { return "all tetrahedra list their vertices in the other order"; });
+  }
+}
+
 /// Also turns inverted tetrahedra round in `upright`, a copy of `mesh`.
 void find_unsound(const TetMesh& mesh, Finds& finds, TetMesh& upright) {
   for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
@@ -293,6 +307,7 @@ MeshFaults mend(TetMesh& mesh) {
   drop_repeated(mesh, finds);
   find_not_finite(mesh, finds);
   const bool finite = !faults.refused();
+  turn_round(mesh, finds);
   TetMesh upright = mesh;
   find_unsound(mesh, finds, upright);
   faults.surface_seen = std::ranges::all_of(faults.found, [](const MeshFault& f) {

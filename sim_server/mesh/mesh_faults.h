@@ -29,7 +29,7 @@ struct MeshFaults {
 
 /// Mends `mesh` where that can mean one thing only, and tells everything that was wrong:
 /// - mended: vertices in no tetrahedron and repeated tetrahedra (dropped), vertices in one place (merged,
-///   where `merge_coincident` can);
+///   where `merge_coincident` can), tetrahedra that are all inverted (turned round);
 /// - refused: no tetrahedra, vertices that are not there, coordinates that are not finite, a vertex twice in
 /// a
 ///   tetrahedron, flat or inverted tetrahedra, other vertices in one place, several bodies, tetrahedra that

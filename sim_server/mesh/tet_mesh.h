@@ -23,6 +23,8 @@ struct TetMesh {
   std::map<std::string, std::vector<int>> surface_tags;
   /// Triangles of each such surface as the file has them: corners ascending, and so the list.
   std::map<std::string, std::vector<Triangle>> tagged_triangles = {};
+  /// Number of tetrahedra in each named (or numbered) group of volumes, as the file has them.
+  std::map<std::string, std::size_t> volume_tags = {};
   /// The two corners, ascending, of the edge in whose middle each of the last vertices is. All edges of the
   /// mesh, ascending (`add_mid_edges`), or none.
   std::vector<std::array<int, 2>> mid_edges = {};

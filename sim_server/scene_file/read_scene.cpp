@@ -135,15 +135,18 @@ void warn_of_locking(const Scene& scene) {
       scene.material_where, scene.material->poisson_ratio);
 }
 
-/// Fat and brain have some hundred pascals, bone ten gigapascals.
 /// Soft tissue is about as dense as water, whatever else may be meant by a number.
 void warn_of_density(const Scene& scene) {
   constexpr double kLeast = 100, kMost = 5000;  // kg/m3
   if (!scene.material || (scene.material->density >= kLeast && scene.material->density <= kMost)) return;
-  log::warning("{}: `density` = {:g} kg/m3; soft tissue has about 1060 (1.06 g/cm3): is the unit right?",
-               scene.material_where, scene.material->density);
+  const double density = scene.material->density, in_grams = 1000 * density;  // of 1 g/cm3
+  const bool grams = in_grams >= kLeast && in_grams <= kMost;
+  log::warning(
+      "{}: `density` = {:g} kg/m3, and soft tissue has about 1060; {}", scene.material_where, density,
+      grams ? fmt::format("if it is in g/cm3, write `density = {:g}`", in_grams) : "give it in kg/m3");
 }
 
+/// Fat and brain have some hundred pascals, bone ten gigapascals.
 void warn_of_stiffness(const Scene& scene) {
   constexpr double kLeast = 100, kMost = 1e9;  // Pa
   if (!scene.material) return;

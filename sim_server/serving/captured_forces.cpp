@@ -19,11 +19,13 @@ constexpr double kFastest = 1e6;             // Hz: what a Welcome may say
 struct Session {
   std::map<std::uint64_t, ForceSample> samples;  // by number; what the capture holds twice counts once
   double tool_radius = 0;
+  std::optional<ScenePrint> scene;
 };
 
 /// Without what is not in order of time: it would be played late.
 CapturedForces in_order(const Session& session) {
   CapturedForces forces;
+  forces.scene = session.scene;
   if (session.tool_radius > 0) forces.tool_radius = session.tool_radius;
   for (const auto& [number, sample] : session.samples) {
     if (forces.samples.empty() || sample.tool_t_ns > forces.samples.back().tool_t_ns)
@@ -53,8 +55,10 @@ CapturedForces read_captured_forces(const std::filesystem::path& capture) {
     if (sessions.size() >= kMostSessions && !sessions.contains(datagram.header.session)) continue;
     if (const auto* sample = std::get_if<ForceSample>(&datagram.message))
       sessions[datagram.header.session].samples.emplace(sample->number, *sample);
-    if (const auto* welcome = std::get_if<Welcome>(&datagram.message))
+    if (const auto* welcome = std::get_if<Welcome>(&datagram.message)) {
       sessions[datagram.header.session].tool_radius = welcome->tool_radius;
+      sessions[datagram.header.session].scene = print_in(*welcome, captured.from);
+    }
   }
   if (const std::string trouble = reader.trouble(); !trouble.empty())
     log::warning("{}: {}", capture.string(), trouble);

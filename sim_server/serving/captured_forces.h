@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "protocol/messages.h"
+#include "protocol/scene_print.h"
 
 namespace palpate::sim {
 
@@ -10,8 +11,9 @@ namespace palpate::sim {
 /// states that they answer.
 struct CapturedForces {
   std::vector<protocol::ForceSample> samples;
-  double tool_radius = 0.005;  ///< m: of the session's Welcome, if the capture has it
-  double rate_hz() const;      ///< samples a second; 0 with fewer than two
+  double tool_radius = 0.005;                   ///< m: of the session's Welcome, if the capture has it
+  std::optional<protocol::ScenePrint> scene{};  ///< of a recording in virtual time
+  double rate_hz() const;                       ///< samples a second; 0 with fewer than two
   double seconds() const;
 };
 

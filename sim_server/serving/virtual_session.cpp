@@ -14,9 +14,8 @@ namespace {
 
 constexpr double kNow = 1e-9;  // s: rounding of tick and step times
 
-Endpoint documentation_address(std::uint8_t last, std::uint16_t port) {
-  return {.address = {192, 0, 2, last}, .port = port};
-}
+constexpr std::uint16_t kFirstPort = 45131;  // of the clients
+
 /// Captures of different motions or links are different sessions.
 std::uint64_t session_number(const Trajectory& motion, const VirtualLink& link) {
   constexpr int kPlaces = 64;  // that tell one motion from another
@@ -41,27 +40,34 @@ ToolState state_at(const Trajectory& motion, double t) {
   return {.p_W = motion.at(t), .q_W = {q.w(), q.x(), q.y(), q.z()}, .buttons = motion.buttons_at(t)};
 }
 
-const Endpoint kClient = documentation_address(1, 45131), kServer = documentation_address(2, 45130);
+std::vector<double> radii_of(const Simulation& simulation) {
+  std::vector<double> radii;
+  for (std::size_t i = 0; i < simulation.tools(); ++i) radii.push_back(simulation.tool(i).radius());
+  return radii;
+}
 
 }  // namespace
 
 VirtualSession::VirtualSession(Simulation& simulation, std::span<const Trajectory> motions,
-                               double tool_radius, const VirtualLink& link, CaptureWriter& capture,
-                               const ErrorOfForce* errors)
+                               const VirtualLink& link, CaptureWriter& capture, const ErrorOfForce* errors)
     : simulation_(simulation),
       served_(simulation, errors),
       inputs_(simulation.tools()),
       motions_(motions.first(std::min(motions.size(), simulation.tools()))),
       link_(link),
       capture_(capture),
-      server_(link.rate_hz, {tool_radius}),
-      session_(session_number(motions[link.tool], link)),
-      client_pages_{.surface = 0,
-                    .near = protocol::NearTiles(served_.pager(link.tool)->state().vertices),
-                    .sent = {},
-                    .has = {}} {
+      server_(link.rate_hz, radii_of(simulation)) {
+  for (std::size_t i = 0; i < motions_.size(); ++i) add_client(i);
   stats_.snaps = SnapCounter(link.rate_hz);
   stats_.missed = MissedTools(simulation.tools());
+}
+
+void VirtualSession::add_client(std::size_t tool) {
+  clients_.push_back({.tool = tool,
+                      .endpoint = virtual_address(1, static_cast<std::uint16_t>(kFirstPort + tool)),
+                      .session = session_number(motions_[tool], link_) + 2 * tool,
+                      .talk = ClientSession(Nonce{1 + tool}),
+                      .pages = {.near = NearTiles(served_.pager(tool)->state().vertices)}});
 }
 
 Time VirtualSession::time_of(std::uint64_t k) const {
@@ -70,31 +76,44 @@ Time VirtualSession::time_of(std::uint64_t k) const {
 
 void VirtualSession::tick(std::uint64_t k) {
   const Time t = now_ = time_of(k);
-  keep_session(t);
-  ToolState state = state_at(motions_[link_.tool], to_seconds(t));
-  state.tool = client_.welcome().tool;
+  for (Client& client : clients_) {
+    keep_session(client, t);
+    client.state = next_state(client, k, t);
+  }
+  note_paths();
+  step(to_seconds(time_of(k + 1)) * link_.rate_hz);
+  announce(clients_[link_.tool], t);
+  for (Client& client : clients_) {
+    if (client.tool != link_.tool) announce(client, t);
+  }
+  deliver(t);
+}
+
+ToolState VirtualSession::next_state(const Client& client, std::uint64_t k, Time t) const {
+  const Trajectory& motion = motions_[client.tool];
+  ToolState state = state_at(motion, to_seconds(t));
+  state.tool = client.talk.welcome().tool;
   state.tick = k + 1;
   state.t_ns = t.count();
-  newest_p_W_ = state.p_W;
-  if (k > 0) state.v_W = link_.ticks_hz * (state.p_W - motions_[link_.tool].at(to_seconds(time_of(k - 1))));
-  newest_v_W_ = state.v_W;
+  if (k > 0) state.v_W = link_.ticks_hz * (state.p_W - motion.at(to_seconds(time_of(k - 1))));
   if (link_.parts) {
     state.flags |= ToolState::kRequestsTangent | ToolState::kRequestsAhead | ToolState::kRequestsSurface |
                    ToolState::kRequestsErrors;
-    state.pages_taken = pages_;
+    state.pages_taken = client.pages_taken;
     state.lead_ns = (lateness_.took + link_.delay + from_seconds(0.5 / link_.rate_hz)).count();
   }
-  note_paths(state);
-  step(state, to_seconds(time_of(k + 1)) * link_.rate_hz);
+  return state;
+}
+
+/// Sends the newest state of a tool.
+void VirtualSession::announce(Client& client, Time t) {
   // What arrives in this very tick (no delay) is named by its tool state, though it stands behind it.
   for (const InTransit& next : in_transit_) {
-    if (next.ready > t) break;
-    newest_ = next.sample.number;
+    if (next.ready <= t && next.sample.tool == client.tool) client.newest = next.sample.number;
   }
-  state.newest_sample = newest_;
-  to_server(client_.next_header(), state, t);
+  client.state.newest_sample = client.newest;
+  to_server(client, client.talk.next_header(), client.state, t);
   ++stats_.tool_states;
-  deliver(t);
 }
 
 /// Step n is due at n / rate; where steps take time, at a deadline that they put off. Either comes before the
@@ -121,18 +140,27 @@ Time VirtualSession::pass(Time begun, Time took) {
   return done;
 }
 
-/// A step answers the newest tool state there is when it begins.
-void VirtualSession::step(const ToolState& state, double steps_due) {
+/// A step answers the newest tool states there are when it begins.
+void VirtualSession::step(double steps_due) {
   if (!is_due(steps_due)) return;
   ++steps_;
-  // The organ stands as it does when the tool was read, so it moves from one answered tool state to the next.
-  const double dt = to_seconds(Time{state.t_ns} - answered_);
-  answered_ = Time{state.t_ns};
+  // The organ stands as it does when the tools were read, so it moves from one answered tool state to the
+  // next.
+  const double dt = to_seconds(now_ - answered_);
+  answered_ = now_;
   const Time begun = std::max(answered_, deadline());
   if (link_.clock != nullptr) link_.clock->begin(begun);
   const Time begin = thread_time();
   const auto outcomes = served_.step(inputs_, dt);
-  const Time took = thread_time() - begin;
+  note(outcomes, thread_time() - begin);
+  const Time done = link_.clock == nullptr ? answered_ : pass(begun, link_.clock->took());
+  for (const Client& client : clients_) {
+    in_transit_.push_back({done + link_.delay, *outcomes[client.tool].answer});
+    in_transit_.back().sample.tool = client.state.tool;
+  }
+}
+
+void VirtualSession::note(std::span<const ServedTools::Outcome> outcomes, Time took) {
   const auto touches = [](const ServedTools::Outcome& o) { return o.force.contacts > 0; };
   const auto is_flagged = [](const ServedTools::Outcome& o) { return o.force.flagged; };
   if (std::ranges::any_of(outcomes, touches)) {
@@ -146,27 +174,16 @@ void VirtualSession::step(const ToolState& state, double steps_due) {
   const ServedTools::Outcome& outcome = outcomes[link_.tool];
   stats_.snaps.add(outcome.force.force, answered_);
   stats_.jumps.add(published_force(*outcome.answer));
-  const Time done = link_.clock == nullptr ? answered_ : pass(begun, link_.clock->took());
-  in_transit_.push_back({done + link_.delay, *outcome.answer});
-  in_transit_.back().sample.tool = state.tool;
 }
 
-/// Notes the paths of all tools that led to where they are at the time of this one's state.
-void VirtualSession::note_paths(const ToolState& state) {
-  const double t = to_seconds(Time{state.t_ns}), tick = 1 / link_.ticks_hz;
-  for (std::size_t i = 0; i < motions_.size(); ++i) {
-    ToolState newest = state;
-    if (i != link_.tool) {
-      newest = state_at(motions_[i], t);
-      newest.tool = static_cast<std::uint8_t>(i);
-      newest.tick = state.tick;
-      newest.t_ns = state.t_ns;
-      if (t >= tick) newest.v_W = link_.ticks_hz * (newest.p_W - motions_[i].at(t - tick));
-    }
-    inputs_[i].session = i == link_.tool ? session_ : session_ + 1 + i;
-    inputs_[i].state = newest;
-    inputs_[i].fresh = true;
-    inputs_[i].path.add(newest);
+/// Notes the paths of all tools that led to where they are.
+void VirtualSession::note_paths() {
+  for (const Client& client : clients_) {
+    SessionInput& input = inputs_[client.tool];
+    input.session = client.session;
+    input.state = client.state;
+    input.fresh = true;
+    input.path.add(client.state);
   }
 }
 
@@ -174,71 +191,74 @@ void VirtualSession::deliver(Time t) {
   while (!in_transit_.empty() && in_transit_.front().ready <= t) {
     const InTransit next = in_transit_.front();
     in_transit_.pop_front();
+    Client& client = clients_[next.sample.tool];
     // Numbered only now: a Welcome in between does not overtake it.
     auto* const member = server_.holder(next.sample.tool);
-    to_client({session_, ++member->sent}, next.sample, next.ready);
+    to_client(client, {client.session, ++member->sent}, next.sample, next.ready);
     ++stats_.force_samples;
     const bool has_surface = (next.sample.flags & ForceSample::kHasSurface) != 0;
-    if (has_surface && link_.parts) send_surface(next.sample, next.ready);
+    if (has_surface && link_.parts) send_surface(client, next.sample, next.ready);
   }
 }
 
-void VirtualSession::keep_session(Time t) {
-  while (const auto hello = client_.poll(t)) to_server({}, *hello, t);
+void VirtualSession::keep_session(Client& client, Time t) {
+  while (const auto hello = client.talk.poll(t)) to_server(client, {}, *hello, t);
 }
 
-void VirtualSession::send_shape(Time t) {
-  const SurfacePager& pager = *served_.pager(link_.tool);
+void VirtualSession::send_shape(Client& client, Time t) {
+  const SurfacePager& pager = *served_.pager(client.tool);
   const SurfacePages pages = pager.pages();
-  client_pages_.surface = pager.state().version;
-  for (std::uint32_t page = 0; page < pages.first_tile(); ++page) send_page(page, t);
-  if (pages.modes > 0) send_page(pages.spectrum(), t);
-  client_pages_.near = NearTiles(pager.state().vertices);
-  client_pages_.near.take(pager.rest());
-  client_pages_.has.assign(pages.count() - pages.first_tile(), 0);
-  client_pages_.sent.clear();
+  client.pages.surface = pager.state().version;
+  for (std::uint32_t page = 0; page < pages.first_tile(); ++page) send_page(client, page, t);
+  if (pages.modes > 0) send_page(client, pages.spectrum(), t);
+  client.pages.near = NearTiles(pager.state().vertices);
+  client.pages.near.take(pager.rest());
+  client.pages.has.assign(pages.count() - pages.first_tile(), 0);
+  client.pages.sent.clear();
 }
 
 /// Sends what the client lacks of the surface by now, around where the tool is, in the frame of the organ at
 /// rest; nothing of a surface that was withdrawn while a sample was on its way.
-void VirtualSession::send_surface(const ForceSample& sample, Time t) {
-  const SurfacePager& pager = *served_.pager(link_.tool);
+void VirtualSession::send_surface(Client& client, const ForceSample& sample, Time t) {
+  const SurfacePager& pager = *served_.pager(client.tool);
   if (sample.surface.version != pager.state().version) return;
-  if (sample.surface.version != client_pages_.surface) send_shape(t);
+  if (sample.surface.version != client.pages.surface) send_shape(client, t);
   const SurfacePages pages = pager.pages();
-  const double reach = NearTiles::reach(sample.surface.tool_radius, newest_v_W_.norm());
-  client_pages_.near.search(newest_p_W_ - sample.surface.shift_W);
-  if (client_pages_.near.distance() > reach && sample.f_W.isZero(0)) return;
-  client_pages_.near.for_pairs(reach, [&](std::uint32_t a, std::uint32_t b) {
-    pages.for_clusters(a, b, [&](std::uint32_t page) { keep_page(page, pages.first_tile(), t); });
+  const double reach = NearTiles::reach(sample.surface.tool_radius, client.state.v_W.norm());
+  NearTiles& near = client.pages.near;
+  near.search(client.state.p_W - sample.surface.shift_W);
+  if (near.distance() > reach && sample.f_W.isZero(0)) return;
+  near.for_pairs(reach, [&](std::uint32_t a, std::uint32_t b) {
+    pages.for_clusters(a, b, [&](std::uint32_t page) { keep_page(client, page, pages.first_tile(), t); });
     return true;
   });
 }
 
 /// Sends a page that the client no longer has, which then forgets its oldest.
-void VirtualSession::keep_page(std::uint32_t page, std::uint32_t first_tile, Time t) {
+void VirtualSession::keep_page(Client& client, std::uint32_t page, std::uint32_t first_tile, Time t) {
+  Pages& pages = client.pages;
   const std::uint32_t tile = page - first_tile;
-  if (client_pages_.has[tile] != 0 || !send_page(page, t)) return;
-  if (client_pages_.sent.size() == NearTiles::kStored) {
-    client_pages_.has[client_pages_.sent.front()] = 0;
-    client_pages_.sent.pop_front();
+  if (pages.has[tile] != 0 || !send_page(client, page, t)) return;
+  if (pages.sent.size() == NearTiles::kStored) {
+    pages.has[pages.sent.front()] = 0;
+    pages.sent.pop_front();
   }
-  client_pages_.has[tile] = 1;
-  client_pages_.sent.push_back(tile);
+  pages.has[tile] = 1;
+  pages.sent.push_back(tile);
 }
 
 /// True if there is one by now. A client that asks in vain learns nothing, so it need not be in a capture.
-bool VirtualSession::send_page(std::uint32_t number, Time t) {
+bool VirtualSession::send_page(Client& client, std::uint32_t number, Time t) {
   SurfacePage page;
-  if (!served_.pager(link_.tool)->page(number, page) || page.page != number) return false;
-  auto* const member = server_.holder(client_.welcome().tool);
-  to_client({session_, ++member->sent}, page, t);
-  ++pages_;
+  if (!served_.pager(client.tool)->page(number, page) || page.page != number) return false;
+  auto* const member = server_.holder(client.state.tool);
+  to_client(client, {client.session, ++member->sent}, page, t);
+  ++client.pages_taken;
   return true;
 }
 
 void VirtualSession::leave() {
-  to_server(client_.next_header(), Bye{}, now_);
+  for (Client& client : clients_) to_server(client, client.talk.next_header(), Bye{}, now_);
 }
 
 /// Over the wire and into the capture, as bytes.
@@ -248,19 +268,21 @@ Datagram VirtualSession::travel(const Endpoint& from, const Endpoint& to, const 
   const std::size_t size = encode(header, message, bytes);
   capture_.write(t, from, to, {bytes.data(), size}, size);
   Datagram datagram;
-  if (decode({bytes.data(), size}, datagram) != Verdict::kAccepted)
-    fail("the motion leads to {} m, farther than the protocol carries", newest_p_W_.norm());
-  return datagram;
+  if (decode({bytes.data(), size}, datagram) == Verdict::kAccepted) return datagram;
+  const auto* const state = std::get_if<ToolState>(&message);
+  fail("the motion leads to {} m, farther than the protocol carries",
+       state != nullptr ? state->p_W.norm() : 0);
 }
 
-void VirtualSession::to_server(const Header& header, const Message& message, Time t) {
+void VirtualSession::to_server(Client& client, const Header& header, const Message& message, Time t) {
   const auto outcome =
-      server_.receive(travel(kClient, kServer, header, message, t), kClient, t, {session_}, server_stats_);
-  if (outcome.answer) to_client(outcome.answer->first, outcome.answer->second, t);
+      server_.receive(travel(client.endpoint, virtual_server(), header, message, t), client.endpoint, t,
+                      {client.session, nonce_of(link_.scene)}, server_stats_);
+  if (outcome.answer) to_client(client, outcome.answer->first, outcome.answer->second, t);
 }
 
-void VirtualSession::to_client(const Header& header, const Message& message, Time t) {
-  client_.receive(travel(kServer, kClient, header, message, t), t, client_stats_);
+void VirtualSession::to_client(Client& client, const Header& header, const Message& message, Time t) {
+  client.talk.receive(travel(virtual_server(), client.endpoint, header, message, t), t, client.stats);
 }
 
 }  // namespace palpate::sim

@@ -6,18 +6,26 @@
 
 namespace palpate::sim {
 
-/// Errors of the force on each tool by mesh and time step. Measured where a study of the scene is known. Else
-/// the mesh's share is estimated in each step from how fine it is where the tool presses
-/// (`estimated_mesh_error`), but not where that table says nothing: of linear elements on tissue that bends
-/// (`ThinTissue`), or that is all but incompressible (`Material::locks`). That of the time step is
-/// unknown, but where the force follows from the poses of the step alone, so that no step is too long. One
-/// thread.
+/// Errors that a study of a scene measured, and where: they hold near there alone.
+struct StudiedErrors {
+  DiscretisationErrors errors;
+  Box pressed;             ///< of the places of the tool in contact, m
+  double most_newton = 0;  ///< largest force on the tool, N
+};
+
+/// Errors of the force on each tool by mesh and time step. Measured where a study of the scene has pressed,
+/// within a radius of the tool of where it did, and up to 1.5 times as hard. Elsewhere the mesh's share
+/// is estimated in each step from how fine it is where the tool presses (`estimated_mesh_error`); where that
+/// table says nothing, of linear elements on tissue that bends (`ThinTissue`), or that is all but
+/// incompressible (`Material::locks`), by a press at set-up (`ElementTrial`), of a tool with the radius of
+/// the first, or not at all. That of the time step is unknown, but where the force follows from the poses of
+/// the step alone, so that no step is too long. One thread.
 class ErrorOfForce {
  public:
   /// `studied`: of this scene, pressed with its first tool. `simulation` is read here only. O(vertices x
   /// tools).
   ErrorOfForce(const Scene& scene, const Simulation& simulation,
-               const std::optional<DiscretisationErrors>& studied = {});
+               const std::optional<StudiedErrors>& studied = {});
 
   /// Returns the errors of a step in which a tool loads the surface so. O(loads); does not allocate.
   DiscretisationErrors of_step(std::size_t tool, std::span<const VertexLoad> loads) const noexcept;
@@ -40,14 +48,24 @@ class ErrorOfForce {
 
  private:
   DiscretisationErrors of(std::size_t tool, std::optional<double> elements_per_radius) const noexcept;
+  DiscretisationErrors beyond_table(std::size_t tool) const noexcept;
+  bool was_studied(std::size_t tool, std::span<const VertexLoad> loads) const noexcept;
 
   struct OfTool {
     DiscretisationErrors known;          // whatever it touches
     std::optional<ElementKind> element;  // for the estimate; nothing where there is none
+    std::optional<double> tried;         // % by a trial, where the table says nothing
     MeshResolution mesh;
     ErrorMeans steps = {};
   };
+  /// What a study measured, and where it holds.
+  struct Studied {
+    DiscretisationErrors errors;
+    std::vector<char> near;  // of the surface vertices: 1 where it pressed
+    double most_newton;
+  };
   std::vector<OfTool> tools_;
+  std::optional<Studied> studied_;  // with the first tool
   std::optional<ThinTissue> thin_;  // of linear elements
 };
 

@@ -167,6 +167,11 @@ void Simulation::set_cut_options(CutOptions options) {
   if (cut_) cut_->set_options(std::move(options));
 }
 
+/// 1 for each surface vertex of a part that nothing holds; empty: there is none.
+std::span<const char> Simulation::floating() const noexcept {
+  return cut_ ? cut_->floating() : std::span<const char>();
+}
+
 bool Simulation::balanced() const noexcept {
   const NonlinearModel* const nonlinear = tissue_.traits.nonlinear;
   return nonlinear == nullptr || nonlinear->balance() == NonlinearModel::Balance::kBalanced;
@@ -276,8 +281,7 @@ void Simulation::judge_place(const ToolContact& tool, ToolAnswer& answer) noexce
   if (state_.strain && answer.contacts > 0) {
     const double strain = tool.surface_strain(tissue_.positions, organ_.rest);
     answer.strained = state_.strain->add(strain);
-    const bool loose = cut_ && cut_->resection().totals().loose_pieces > 0;  // these may turn
-    const double area = loose ? 1 : tool.least_area(tissue_.positions, organ_.rest);
+    const double area = tool.least_area(tissue_.positions, organ_.rest, floating());
     if (state_.strain->is_inside_out(strain, area)) {
       answer.flagged = true;
       answer.doubt = Doubt::kInsideOut;
@@ -324,10 +328,10 @@ void Simulation::advance_to_instant(std::span<const ToolInput> inputs, int insta
 
 /// True if some of the surface is at no finite place, or beyond any that an organ that is held can get to.
 bool Simulation::ran_away() const noexcept {
-  const bool loose = cut_ && cut_->resection().totals().loose_pieces > 0;  // these may go anywhere
-  const double most = loose ? kAnywhere * kAnywhere : organ_.furthest * organ_.furthest;
+  const std::span<const char> floats = floating();
   const auto is_near = [&](std::size_t v) {  // false of what is not a number, too
-    return (tissue_.positions[v] - organ_.rest[v]).squaredNorm() <= most;
+    const double most = !floats.empty() && floats[v] != 0 ? kAnywhere : organ_.furthest;
+    return (tissue_.positions[v] - organ_.rest[v]).squaredNorm() <= most * most;
   };
   bool near = true;
   if (!cut_) {

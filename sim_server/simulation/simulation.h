@@ -140,6 +140,7 @@ class Simulation {
   void judge_place(const ToolContact& tool, ToolAnswer& answer) noexcept;
   void release_tool(std::size_t tool) noexcept;
   bool ran_away() const noexcept;
+  std::span<const char> floating() const noexcept;
   CutOrgan cut_organ() { return {*organ_.mesh, organ_.surface, organ_.rest, tissue_, tools_.all()}; }
   OrganAfterStep after_step() { return {tissue_, tools_, organ_.rest, cut()}; }
 

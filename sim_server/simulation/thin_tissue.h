@@ -17,6 +17,8 @@ class ThinTissue {
   /// O(tetrahedra + surface), with all vertices within two edges of each of the surface.
   ThinTissue(const TetMesh& mesh, const Surface& surface, const std::vector<int>& held);
 
+  /// True if some face at this vertex of the surface is of such tissue.
+  bool is_thin_at(int vertex) const noexcept { return !thin_[static_cast<std::size_t>(vertex)].empty(); }
   /// True if at least half of what a tool loads the surface with presses such tissue through its thickness.
   /// O(loads); does not allocate.
   bool bears(std::span<const VertexLoad> loads) const noexcept;

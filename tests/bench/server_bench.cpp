@@ -211,7 +211,7 @@ void run_virtual_session(benchmark::State& state) {
   const auto record = [&](const std::filesystem::path& file) {
     test::lift_tools(on->simulation);
     protocol::CaptureWriter capture(file);
-    VirtualSession session(on->simulation, {&motion, 1}, on->radius(), kLink, capture);
+    VirtualSession session(on->simulation, {&motion, 1}, kLink, capture);
     for (std::uint64_t k = 0; k < kTicks; ++k) session.tick(k);
     session.leave();
   };

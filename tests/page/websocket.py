@@ -86,15 +86,16 @@ def apply_mask(data, mask):
     return (int.from_bytes(data, "big") ^ key).to_bytes(length, "big")
 
 
-def connect(address, timeout=20):
-    """A client's connection to ws://HOST:PORT/PATH."""
+def connect(address, timeout=20, protocol=None):
+    """A client's connection to ws://HOST:PORT/PATH, as a page's of a subprotocol if one is named."""
     url = urllib.parse.urlparse(address)
     connection = socket.create_connection((url.hostname, url.port), timeout)
     key = base64.b64encode(os.urandom(16)).decode()
     path = (url.path or "/") + (f"?{url.query}" if url.query else "")
     connection.sendall(
         (f"GET {path} HTTP/1.1\r\nHost: {url.hostname}:{url.port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-         f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n").encode())
+         f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n"
+         + (f"Sec-WebSocket-Protocol: {protocol}\r\nOrigin: http://{url.hostname}:{url.port}\r\n" if protocol else "") + "\r\n").encode())
     answer = b""
     while b"\r\n\r\n" not in answer:
         more = connection.recv(4096)

@@ -1,6 +1,8 @@
 #ifdef PALPATE_WITH_CAPTURE
 // Laws against the truth, offline: the real programs, virtual time.
 #include <chrono>
+#include <fstream>
+#include <iterator>
 
 #include "tests/support/paths.h"
 #include "tests/support/programs.h"
@@ -253,6 +255,22 @@ TEST_CASE("evaluate: a truth of another motion is refused, with how far apart th
         expected_code);
   };
   CHECK_THAT(evaluate("truth.pcap", 0), !Catch::Matchers::Contains("mm away"));
+  // The same motion on tissue that is twice as stiff.
+  std::ifstream in(scene);
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"48e3", "96e3"}, {"../meshes/", source_dir() + "/configs/meshes/"}, {"clients = [", "# ["}}) {
+    REQUIRE(text.find(from) != std::string::npos);
+    text.replace(text.find(from), from.size(), to);
+  }
+  const std::string stiff = folder.write("stiff.toml", text).string();
+  output_of("sim_server",
+            {"record", stiff, "--trajectory", file("motion_0.csv"), "--rate", "500", "--out",
+             file("stiff.pcap"), "--plain"},
+            0);
+  CHECK_THAT(evaluate("stiff.pcap", 2), Catch::Matchers::Contains("another scene") &&
+                                            Catch::Matchers::Contains("differs by: material;") &&
+                                            Catch::Matchers::Contains("record the truth again"));
   CHECK_THAT(evaluate("other.pcap", 2), Catch::Matchers::Contains("up to 2 mm away"));
 }
 #endif

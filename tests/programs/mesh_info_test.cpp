@@ -51,6 +51,15 @@ TEST_CASE("mesh info tells what is mended, exit 0") {
   CHECK(has(said, "  volume              0.166667 m3"));
 }
 
+TEST_CASE("mesh info names the groups of the surface and of the volumes, exit 0") {
+  const TemporaryFolder folder;
+  const std::string file = mesh_file(folder, "1 4 2 10 1 1 2 3 4\n2 2 2 7 1 1 3 2\n");
+  const std::string said = output_of("sim_server", {"mesh", "info", file}, 0);
+  CAPTURE(said);
+  CHECK(has(said, "  surface_tag         \"7\": 1 triangles\n"));
+  CHECK(has(said, "  group of volumes    \"10\": 1 tetrahedra"));
+}
+
 TEST_CASE("mesh info lists all faults of a mesh that is refused, says the first on stderr, exit 2") {
   const TemporaryFolder folder;
   const std::string file = mesh_file(folder, "1 4 0 1 3 2 4\n2 4 0 1 2 3 3\n3 4 0 4 1 2 4\n");

@@ -1,6 +1,7 @@
 // The shipped scenes in which tissue is cut, in virtual time, and their tables.
 #ifdef PALPATE_WITH_CAPTURE
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <sstream>
 
@@ -77,6 +78,18 @@ TEST_CASE("hepatic_resection.toml: a hot tip cuts along the plan, as the table s
   CHECK(b["tetrahedra"].back() == a["tetrahedra"].back());
   CHECK(b["removed_ml"].back() == a["removed_ml"].back());
   CHECK(b["force_N"] == a["force_N"]);
+
+  // The same list, of a mesh whose 20th tetrahedron to go is a micrometre away.
+  std::ifstream in(file("list.csv"));
+  std::string text, line;
+  for (int row = 0; std::getline(in, line); ++row) {
+    const std::size_t z = line.rfind(',') + 1;
+    if (row == 20) line = line.substr(0, z) + std::to_string(std::stod(line.substr(z)) + 1e-6);
+    text += line + "\n";
+  }
+  folder.write("list.csv", text);
+  const std::string said = output_of("sim_server", again, 2);
+  CHECK(said.find("list.csv: is of another mesh: data row 20 ") != std::string::npos);
 }
 
 TEST_CASE(

@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <filesystem>
 #include <stdexcept>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -77,8 +78,10 @@ const std::string& Process::output() {
 bool Process::running() {
   if (ended_) return false;
   int status = 0;
-  if (waitpid(pid_, &status, WNOHANG) != pid_) return true;
+  rusage used{};
+  if (wait4(pid_, &status, WNOHANG, &used) != pid_) return true;
   ended_ = true;
+  peak_bytes_ = 1024.0 * static_cast<double>(used.ru_maxrss);
   code_ = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
   return false;
 }

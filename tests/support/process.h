@@ -23,6 +23,8 @@ class Process {
   bool wait_for(const std::string& text, double seconds = 20);
   /// All output so far.
   const std::string& output();
+  /// Most memory that it held resident, bytes, as the system counted it; once it has ended.
+  double peak_bytes() const { return peak_bytes_; }
 
  private:
   void drain();
@@ -30,6 +32,7 @@ class Process {
   int pipe_ = -1;
   int code_ = 0;
   bool ended_ = false;
+  double peak_bytes_ = 0;
   std::string output_;
 };
 

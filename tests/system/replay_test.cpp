@@ -46,6 +46,12 @@ TEST_CASE("record and replay twice: the same bytes, and what the report counts i
     replay(file("a.pcap"), {"--method", method, "--rate", "1000", "--out", file("c.csv")});
     CHECK(10 * bytes_of(file("c.csv")).size() > 18 * bytes_of(file("a.csv")).size());
   }
+  // A client file of another rate is not the one of this session.
+  const std::string faster = folder.write("faster.toml", "rate_hz = 1000\n").string();
+  CHECK(replay(file("a.pcap"), {"--client", faster}).find("has 500 ticks a second") != std::string::npos);
+  CHECK(replay(file("a.pcap"), {"--client", faster, "--rate", "1000"}).find("ticks a second, and") ==
+        std::string::npos);
+  CHECK(replay(file("a.pcap"), {"--client", kClient}).find("ticks a second, and") == std::string::npos);
   const Json capture = read_json(file("r.json"))["capture"];
   CHECK(capture["packets"] == recorded["packets"]);
   CHECK(capture["tool_states"] == recorded["tool_states"]);

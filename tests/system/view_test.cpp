@@ -107,7 +107,10 @@ TEST_CASE("view: a capture with its scene is stepped again, to the same forces")
 
   // Another scene is not taken for it.
   const std::string other = source_dir() + "/configs/scenes/liver_tensor_mass.toml";
-  CHECK(Viewed({file, "--scene", other}).said.find("is it the scene") != std::string::npos);
+  const std::string refused =
+      output_of("sim_server", {"view", file, "--scene", other, "--viewer", "0", "--seconds", "1"}, 2);
+  CHECK(refused.find("was recorded of another scene, which differs by: ") != std::string::npos);
+  CHECK(refused.find("model") != std::string::npos);
 
   // Without one there is no organ, but tools and forces.
   const PlayedSession bare(Viewed({file}).session);

@@ -316,8 +316,7 @@ TEST_CASE("a broken text file is named with its line", "[mesh]") {
   CHECK(error("2 1 0 0", "3 1 0 0") == "FILE:9: node 3 is given twice");
   CHECK(error("1 2 3 4", "1 2 3 5") == "FILE:13: an element names node 5, which the file does not have");
   CHECK(error("1 4 0", "1 77 0") == "FILE:13: unknown element type 77; save tetrahedra and triangles only");
-  CHECK(error("1 4 0", "1 11 0") ==
-        "FILE:13: tetrahedra of higher order (type 11); mesh with order 1: `gmsh -3 -order 1 MODEL.geo`");
+  CHECK(error("1 4 0", "1 11 0") == "FILE:14: expected a node of an element, found \"$EndElements\"");
   CHECK(error("$EndElements\n", "") == "FILE:14: expected $EndElements, found the end of the file");
   CHECK(error("\n$Elements", "\n# hello\n$Elements") == "FILE:11: expected a section ($Name), found \"#\"");
   CHECK(error("$Nodes", "$ParametricNodes") ==
@@ -331,6 +330,51 @@ TEST_CASE("a broken text file is named with its line", "[mesh]") {
         "FILE:6: expected the name of physical group 1 in double quotes");
   CHECK(error("2.2 0 8", "2.2 2 8") == "FILE:2: expected 0 (text) or 1 (binary), found 2");
   CHECK(error("2.2 0 8", "2.2 0 8 9") == "FILE:2: expected the end of the line, found \"9\"");
+}
+
+TEST_CASE("numbers with a plus, and comments before the format, are read", "[mesh]") {
+  const Scratch scratch;
+  const std::string plain = kHead22 + kNodes22 + kElements22;
+  const TetMesh mesh = read_mesh(scratch.write(plain));
+  const TetMesh same = read_mesh(
+      scratch.write("$Comments\nmade by X\n$EndComments\n" + replaced(plain, "2 1 0 0", "2 +1.0e+0 +0 -0")));
+  CHECK(same.vertices == mesh.vertices);
+  CHECK(same.tetrahedra == mesh.tetrahedra);
+  CHECK(scratch.error_of(replaced(plain, "2 1 0 0", "2 +-1 0 0")) ==
+        "FILE:7: expected a coordinate of a node, found \"+-1\"");
+  CHECK(scratch.error_of("$Comments\n$EndComments\n").find("no known format") != std::string::npos);
+}
+
+TEST_CASE("tetrahedra and triangles of second order are read by their corners, which is said", "[mesh]") {
+  const Scratch scratch;
+  std::string nodes = "$Nodes\n10\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n";
+  for (const char* middle :
+       {"5 .5 0 0\n", "6 .5 .5 0\n", "7 0 .5 0\n", "8 0 0 .5\n", "9 0 .5 .5\n", "10 .5 0 .5\n"})
+    nodes += middle;
+  const CheckedMesh checked = check_mesh(scratch.write(
+      kHead22 + nodes +
+      "$EndNodes\n$Elements\n2\n1 11 2 1 1 1 2 3 4 5 6 7 8 9 10\n2 9 2 7 1 1 3 2 7 6 5\n$EndElements\n"));
+  CHECK_FALSE(checked.faults.refused());
+  CHECK(checked.mesh.tetrahedra == std::vector<Tetrahedron>{{0, 1, 2, 3}});
+  CHECK(checked.mesh.vertices.size() == 4);
+  CHECK(checked.mesh.surface_tags.at("7") == std::vector<int>{0, 1, 2});
+  CHECK(mended_in_short(checked.faults).find("tetrahedra of higher order (1) read by their corners") !=
+        std::string::npos);
+}
+
+TEST_CASE("the parts of a partitioned file are in the groups that it names, volumes too", "[mesh]") {
+  const Scratch scratch;
+  const std::string file =
+      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n"
+      "$PhysicalNames\n2\n2 5 \"bottom\"\n3 5 \"lesion\"\n$EndPhysicalNames\n"
+      "$Entities\n0 0 1 1\n1 0 0 0 1 1 0 1 5 0\n1 0 0 0 1 1 1 1 5 1 1\n$EndEntities\n"
+      "$PartitionedEntities\n2\n1\n9 2\n0 0 1 1\n"
+      "11 2 1 2 1 2 0 0 0 1 1 0 1 5 0\n12 3 1 1 1 0 0 0 1 1 1 1 5 1 11\n$EndPartitionedEntities\n"
+      "$Nodes\n1 4 1 4\n3 12 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n$EndNodes\n"
+      "$Elements\n2 2 1 2\n2 11 2 1\n1 1 2 3\n3 12 4 1\n2 1 2 3 4\n$EndElements\n";
+  const TetMesh mesh = read_mesh(scratch.write(file));
+  CHECK(mesh.surface_tags == std::map<std::string, std::vector<int>>{{"bottom", {0, 1, 2}}});
+  CHECK(mesh.volume_tags == std::map<std::string, std::size_t>{{"lesion", 1}});
 }
 
 TEST_CASE("a solid that cannot be simulated is named with its file", "[mesh]") {

@@ -164,6 +164,20 @@ TEST_CASE("a repeated tetrahedron is dropped, in whatever order it names its ver
   CHECK(mended_in_short(faults) == "repeated tetrahedra (2) dropped");
 }
 
+TEST_CASE("a mesh that lists all its tetrahedra the other way round is turned round", "[mesh]") {
+  TetMesh mesh = grid_block({0, 1, 2}, {0, 1}, {0, 1});
+  const TetMesh right = mesh;
+  for (Tetrahedron& t : mesh.tetrahedra) std::swap(t[2], t[3]);
+  const MeshFaults faults = mend(mesh);
+  REQUIRE(faults.found.size() == 1);
+  CHECK(faults.found[0].cure == Cure::kMended);
+  CHECK(faults.found[0].count == right.tetrahedra.size());
+  CHECK(faults.found[0].kind == "tetrahedra the other way round");
+  CHECK(mesh.tetrahedra == right.tetrahedra);
+  std::swap(mesh.tetrahedra[0][2], mesh.tetrahedra[0][3]);  // one alone is a slip
+  CHECK(mend(mesh).refused());
+}
+
 TEST_CASE("a tetrahedron and its mirror image are not the same: one is inverted", "[mesh]") {
   TetMesh mesh = corner_tetrahedron();
   mesh.tetrahedra.push_back({1, 0, 2, 3});

@@ -45,7 +45,7 @@ Trajectory motion(const TemporaryFolder& folder, double swing = 0.008) {
 
 std::uint64_t record(Simulation& simulation, const Trajectory& motion, const std::filesystem::path& file) {
   protocol::CaptureWriter capture(file);
-  VirtualSession session(simulation, {&motion, 1}, 0.003, {kRate, kTicks}, capture);
+  VirtualSession session(simulation, {&motion, 1}, {kRate, kTicks}, capture);
   for (int k = 0; k <= static_cast<int>(motion.duration() * kTicks); ++k)
     session.tick(static_cast<std::uint64_t>(k));
   session.leave();
@@ -166,7 +166,7 @@ TEST_CASE(
   often.set_cut_options({.planned = removals});
   {
     protocol::CaptureWriter capture(folder.path() / "c.pcap");
-    VirtualSession session(often, {&path, 1}, 0.003, {500, kTicks}, capture);
+    VirtualSession session(often, {&path, 1}, {500, kTicks}, capture);
     for (std::uint64_t k = 0; k <= static_cast<std::uint64_t>(kTicks); ++k) session.tick(k);
   }
   CHECK(often.resection()->remaining().count() == heated.resection()->remaining().count());
@@ -193,8 +193,8 @@ TEST_CASE("samples tell of a surface until it is cut, in that step no more, and 
   simulation.set_cut_options({.planned = removals});
   {
     protocol::CaptureWriter capture(folder.path() / "a.pcap");
-    VirtualSession session(simulation, {&path, 1}, 0.003,
-                           {.rate_hz = kRate, .ticks_hz = kTicks, .parts = true}, capture);
+    VirtualSession session(simulation, {&path, 1}, {.rate_hz = kRate, .ticks_hz = kTicks, .parts = true},
+                           capture);
     for (std::uint64_t k = 0; k <= 3 * static_cast<std::uint64_t>(kTicks); ++k) session.tick(k);
   }
   std::vector<std::uint32_t> before, after;

@@ -5,6 +5,7 @@
 #include "sim_server/study/studied_errors.h"
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"
+#include "tests/support/soft_block.h"
 #include "tests/support/solids.h"
 #include "tests/support/temporary_folder.h"
 
@@ -86,34 +87,66 @@ TEST_CASE("error of the force: friction and tissue in motion depend on the steps
   CHECK(source("tensor_mass", 0) == ErrorSource::kUnknown);
 }
 
-TEST_CASE(
-    "error of the force: a study takes the place of estimates, as long as scene and mesh are the same") {
+TEST_CASE("error of the force: a study holds where it pressed and as hard, as long as scene and mesh stay") {
   const test::TemporaryFolder folder;
   const SetupCache cache(folder.path() / "cache");
   Scene scene = test::liver_scene();
   scene.tools.push_back(scene.tools.front());  // the study pressed with the first alone
   scene.source = folder.write("scene.toml", "rate_hz = 30").string();
+  const Simulation simulation(scene);
+  const VertexLoad top = pressed_at_top(simulation);
+  const double radius = scene.tools.front().shape.radius;
+  const Vec3 place = simulation.rest()[static_cast<std::size_t>(top.vertex)] + Vec3(0, 0.9 * radius, 0);
   CHECK_FALSE(find_studied(cache, scene));
-  keep_studied(cache, scene, {{ErrorSource::kMeasured, 12.5F}, {ErrorSource::kMeasured, 0.25F}}, 60);
+  keep_studied(cache, scene,
+               {.errors = {{ErrorSource::kMeasured, 12.5F}, {ErrorSource::kMeasured, 0.25F}},
+                .pressed = {place, place},
+                .most_newton = 0.8},
+               60);
   const auto found = find_studied(cache, scene);
   REQUIRE(found);
-  CHECK(found->mesh.percent == 12.5F);
-  CHECK(found->time_step.percent == 0.25F);
-  const Simulation simulation(scene);
-  const std::vector<VertexLoad> loads{pressed_at_top(simulation)};
-  const DiscretisationErrors errors = ErrorOfForce(scene, simulation, found).of_step(0, loads);
-  CHECK(errors.mesh.source == ErrorSource::kMeasured);
-  CHECK(errors.mesh.percent == 12.5F);
-  CHECK(errors.time_step.source == ErrorSource::kNone);  // this scene makes none
-  CHECK(ErrorOfForce(scene, simulation, found).of_step(1, loads).mesh.source == ErrorSource::kEstimated);
+  CHECK(found->errors.mesh.percent == 12.5F);
+  CHECK(found->errors.time_step.percent == 0.25F);
+  CHECK(found->pressed.min == place);
+  CHECK(found->pressed.max == place);
+  CHECK(found->most_newton == 0.8);
+  const ErrorOfForce of_force(scene, simulation, found);
+  const auto source = [&](const ErrorOfForce& errors, std::size_t tool, const VertexLoad& load) {
+    return errors.of_step(tool, std::span(&load, 1)).mesh.source;
+  };
+  CHECK(of_force.of_step(0, std::span(&top, 1)).mesh.percent == 12.5F);
+  CHECK(source(of_force, 0, top) == ErrorSource::kMeasured);  // 1 N, 1.25 times as hard
+  CHECK(of_force.of_step(0, std::span(&top, 1)).time_step.source == ErrorSource::kNone);  // it makes none
+  CHECK(source(of_force, 1, top) == ErrorSource::kEstimated);
+  CHECK(source(of_force, 0, {top.vertex, {0, -1.21, 0}}) == ErrorSource::kEstimated);  // 1.51 times
+  for (std::size_t v = 0; v < simulation.rest().size(); ++v) {
+    const Vec3 away = (simulation.rest()[v] - place).cwiseAbs();
+    if (std::abs(away.maxCoeff() - radius) < 1e-9 * radius) continue;
+    CHECK((source(of_force, 0, {static_cast<int>(v), {0, -1, 0}}) == ErrorSource::kMeasured) ==
+          (away.maxCoeff() < radius));
+  }
   scene.tools.front().grasp_buttons = 1;  // the study held nothing
-  CHECK(ErrorOfForce(scene, simulation, found).of_step(0, loads).mesh.source == ErrorSource::kUnknown);
+  CHECK(source(ErrorOfForce(scene, simulation, found), 0, top) == ErrorSource::kUnknown);
   folder.write("scene.toml", "rate_hz = 31");
   CHECK_FALSE(find_studied(cache, scene));
 }
 
+TEST_CASE("error of the force: a study has pressed where its tool felt a force, as hard as its largest") {
+  Trace trace;
+  trace.places = {{0, 0.03, 0}, {0, 0.02, 0.001}, {0.004, 0.01, 0}, {0.009, 0.05, 0}};
+  trace.forces = {{0, 0, 0}, {0, 0.5, 0}, {0, 0.3, 0.4 * std::sqrt(2)}, {0, 1e-9, 0}};
+  const auto pressed = pressed_in(trace);
+  REQUIRE(pressed);
+  CHECK(pressed->pressed.min == Vec3(0, 0.01, 0));
+  CHECK(pressed->pressed.max == Vec3(0.004, 0.02, 0.001));
+  CHECK(pressed->most_newton == Approx(std::sqrt(0.41)));
+  trace.forces.assign(4, Vec3::Zero());
+  CHECK_FALSE(pressed_in(trace));
+}
+
 TEST_CASE(
-    "error of the force: of linear elements that bend or lock it is not known how far the mesh is off") {
+    "error of the force: of linear elements that bend or lock the table does not say how far the mesh is "
+    "off") {
   // A plate of 60 x 60 mm with edges of 3 mm, so many layers thick, held at its rim or on its whole lower
   // side; pressed in the middle of its upper side.
   const auto source = [](int layers, double poisson_ratio, bool lies, ElementKind element) {
@@ -130,10 +163,55 @@ TEST_CASE(
     return ErrorOfForce(scene, simulation).of_step(0, loads).mesh.source;
   };
   using enum ElementKind;
-  CHECK(source(1, 0.3, false, kLinear) == ErrorSource::kUnknown);
+  CHECK(source(1, 0.3, false, kLinear) == ErrorSource::kEstimated);  // by a press on quadratic ones
   CHECK(source(2, 0.3, false, kLinear) == ErrorSource::kUnknown);
   CHECK(source(4, 0.3, false, kLinear) == ErrorSource::kEstimated);
   CHECK(source(1, 0.3, true, kLinear) == ErrorSource::kEstimated);  // it rests on what does not move
   CHECK(source(4, 0.4999, false, kLinear) == ErrorSource::kUnknown);
   CHECK(source(4, 0.48, false, kLinear) == ErrorSource::kEstimated);
+}
+
+TEST_CASE("error of the force: of a sheet of one layer that bends, a trial finds what plate theory says") {
+  // 60 x 60 x 2 mm, clamped all around, pressed in the middle: P = w D / (0.0056 a^2), D = E t^3 / 12 / (1 -
+  // nu^2) (Timoshenko and Woinowsky-Krieger 1959, Theory of Plates and Shells, table 35).
+  constexpr double kSide = 0.06, kThick = 0.002, kModulus = 1e5, kNu = 0.3;
+  Scene scene = test::scene_of({.young_modulus = kModulus, .poisson_ratio = kNu},
+                               {Vec3(-1, -1, -1), Vec3(1e-4, 1, 1)}, kRadius);
+  const auto hold = [&](const Vec3& min, const Vec3& max) {
+    FixedRegion fixed;
+    fixed.box = Box{min, max};
+    scene.fixed.push_back(fixed);
+  };
+  hold({kSide - 1e-4, -1, -1}, {1, 1, 1});
+  hold({-1, -1, -1}, {1, 1, 1e-4});
+  hold({-1, -1, kSide - 1e-4}, {1, 1, 1});
+  Simulation simulation(scene, test::corner_block({kSide, kThick, kSide}, {20, 1, 20}));
+  const double depth = 0.4 * kRadius;
+  const ToolForce force = simulation.step(ToolPose(Vec3(kSide / 2, kThick + kRadius - depth, kSide / 2)), 1);
+  const double stiffness =
+      kModulus * std::pow(kThick, 3) / 12 / (1 - kNu * kNu) / (0.0056 * kSide * kSide);  // N/m
+  const double too_stiff = force.force.norm() / (stiffness * depth);
+  const DiscretisationErrors errors = ErrorOfForce(scene, simulation).of_step(0, simulation.loads(0));
+  CAPTURE(too_stiff, errors.mesh.percent);
+  CHECK(errors.mesh.source == ErrorSource::kEstimated);
+  CHECK(too_stiff > 4);
+  CHECK(1 + errors.mesh.percent / 100 == Approx(too_stiff).epsilon(0.2));
+}
+
+TEST_CASE(
+    "error of the force: of elements that lock, a trial finds what a finer mesh of quadratic ones says") {
+  Scene scene = test::deep_block_scene("quasi_static");
+  scene.material->poisson_ratio = 0.4999;
+  Simulation simulation(scene, test::deep_block());
+  const ToolPose pose(Vec3(0, 0.6 * kRadius, 0));
+  const double locked = simulation.step(pose, 1).force.norm();
+  Scene finer = scene;
+  finer.material->element = ElementKind::kQuadratic;
+  finer.tools[0].reach = Box{Vec3(-0.011, -0.001, -0.011), Vec3(0.011, 0.001, 0.011)};
+  const double right = Simulation(finer, test::deep_block({16, 8, 16})).step(pose, 1).force.norm();
+  const DiscretisationErrors errors = ErrorOfForce(scene, simulation).of_step(0, simulation.loads(0));
+  CAPTURE(locked / right, errors.mesh.percent);
+  CHECK(errors.mesh.source == ErrorSource::kEstimated);
+  CHECK(locked > 1.5 * right);
+  CHECK(1 + errors.mesh.percent / 100 == Approx(locked / right).epsilon(0.25));
 }
