@@ -64,25 +64,28 @@ ErrorOfForce::ErrorOfForce(const Scene& scene, const Simulation& simulation,
   const ToolSettings& first = scene.tools.front();
   if (!studied || first.grasps()) return;  // a study presses
   const Vec3 margin = Vec3::Constant(first.shape.radius);
-  const Box near{studied->pressed.min - margin, studied->pressed.max + margin};
   studied_ = {.errors = those_by_method(studied->errors, deforms, steps_matter(scene, first)),
-              .near = {},
+              .near = {studied->pressed.min - margin, studied->pressed.max + margin},
+              .rest = {simulation.rest().begin(), simulation.rest().end()},
               .most_newton = studied->most_newton};
-  for (const Vec3& rest : simulation.rest()) studied_->near.push_back(near.contains(rest) ? 1 : 0);
 }
 
 /// True if a study has pressed there, and about as hard.
 bool ErrorOfForce::was_studied(std::size_t tool, std::span<const VertexLoad> loads) const noexcept {
   constexpr double kAsHard = 1.5;  // 1.3 times as deep, as the force of a ball goes with its depth ^ 1.5
   if (!studied_ || tool != 0) return false;
-  Vec3 force = Vec3::Zero();
-  double all = 0, near = 0;
+  // Between vertices that are far apart it bears on these, however near it is: their middle is where it is.
+  Vec3 force = Vec3::Zero(), middle = Vec3::Zero();
+  double all = 0;
   for (const VertexLoad& load : loads) {
+    const auto vertex = static_cast<std::size_t>(load.vertex);
+    if (vertex >= studied_->rest.size()) continue;  // one that a cut has made
+    const double size = load.force.norm();
     force += load.force;
-    all += load.force.norm();
-    if (studied_->near[static_cast<std::size_t>(load.vertex)] != 0) near += load.force.norm();
+    all += size;
+    if (all > 0) middle += size / all * (studied_->rest[vertex] - middle);
   }
-  return near > 0.5 * all && force.norm() <= kAsHard * studied_->most_newton;
+  return all > 0 && studied_->near.contains(middle) && force.norm() <= kAsHard * studied_->most_newton;
 }
 
 std::optional<double> ErrorOfForce::finest(std::size_t tool, std::span<const Triangle> touchable) const {

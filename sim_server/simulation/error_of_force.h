@@ -61,7 +61,8 @@ class ErrorOfForce {
   /// What a study measured, and where it holds.
   struct Studied {
     DiscretisationErrors errors;
-    std::vector<char> near;  // of the surface vertices: 1 where it pressed
+    Box near;                // where it pressed, at rest, m
+    std::vector<Vec3> rest;  // the surface vertices, m
     double most_newton;
   };
   std::vector<OfTool> tools_;

@@ -90,8 +90,10 @@ TEST_CASE("whole error: estimated, then measured by a study, with the extrapolat
   CHECK_THAT(pressed.said, Catch::Contains("mesh              189   estimated"));
 
   const std::string out = (pressed.folder.path() / "out").string();
-  output_of("sim_server", {"study", pressed.scene, "--out", out, "--quick", "--cache", pressed.cache}, 0,
-            120);
+  output_of("sim_server",
+            {"study", pressed.scene, "--trajectory", (pressed.folder.path() / "motion.csv").string(), "--out",
+             out, "--quick", "--cache", pressed.cache},
+            0, 120);
   rendered = pressed.rendered();
   CHECK_THAT(rendered["how"]["mesh"].get<std::string>(), Catch::StartsWith("measured by a study"));
   // At rest no step is too long, so that all that the study finds of the scene comes from its mesh; told is
