@@ -7,6 +7,7 @@
 #include <toml++/toml.h>
 
 #include "common/error.h"
+#include "common/files.h"
 #include "common/log.h"
 #include "common/renamed_keys.h"
 #include "common/text.h"
@@ -89,9 +90,7 @@ struct Config::Node {
 Config::Config(std::shared_ptr<Node> node) : node_(std::move(node)) {}
 
 Config Config::read(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) fail("{}: is a folder; name a file in it", file.string());
-  if (!std::filesystem::is_regular_file(file, ignored)) fail("{}: no such file", file.string());
+  require_file(file, "a file");
   if (!std::ifstream(file)) fail("{}: cannot be read; check its permissions", file.string());
   try {
     auto root = std::make_shared<toml::table>(toml::parse_file(file.string()));

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "common/error.h"
+#include "common/files.h"
 #include "common/text.h"
 
 namespace palpate {
@@ -56,9 +57,7 @@ std::optional<double> number_in(std::string_view cell, bool takes_comma) {
 }
 
 std::ifstream open_csv(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) fail("{}: is a folder; name a file in it", file.string());
-  if (!std::filesystem::is_regular_file(file, ignored)) fail("{}: no such file", file.string());
+  require_file(file, "a file");
   std::ifstream in(file);
   if (!in) fail("{}: cannot be read; check its permissions", file.string());
   return in;

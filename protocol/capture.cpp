@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "common/error.h"
+#include "common/files.h"
 #include "protocol/link_frames.h"
 
 namespace palpate::protocol {
@@ -133,12 +134,9 @@ constexpr const char* kWhatIsRead =
     "pcap and pcapng files are read; `editcap -F pcap IN OUT` converts many others";
 
 void check_file(const std::filesystem::path& path) {
+  require_file(path, "a capture file");
   std::error_code failed;
-  const std::filesystem::file_status status = std::filesystem::status(path, failed);
-  if (!std::filesystem::exists(status)) fail("{}: no such file", path.string());
-  if (std::filesystem::is_directory(status))
-    fail("{}: is a folder; name a capture file in it", path.string());
-  if (std::filesystem::is_regular_file(status) && std::filesystem::file_size(path, failed) == 0 && !failed) {
+  if (std::filesystem::file_size(path, failed) == 0 && !failed) {
     fail("{}: is empty (0 bytes), so no capture; {}", path.string(), kWhatIsRead);
   }
 }
@@ -153,7 +151,7 @@ constexpr const char* kMixed =
     "only "
     "in snap length, `editcap -F pcap IN OUT` helps, else capture one interface at a time";
 
-/// libpcap would only call it no capture. A pipe is not looked at: what is read from it is gone.
+/// libpcap would only call it no capture.
 void refuse_compressed(std::FILE* stream, const std::filesystem::path& path) {
   struct Packer {
     std::array<unsigned char, 2> begins;
@@ -161,7 +159,6 @@ void refuse_compressed(std::FILE* stream, const std::filesystem::path& path) {
   };
   static constexpr std::array<Packer, 3> kPackers{
       {{{0x1f, 0x8b}, "gunzip -k"}, {{0x28, 0xb5}, "unzstd"}, {{0xfd, '7'}, "unxz -k"}}};
-  if (!std::filesystem::is_regular_file(path)) return;
   std::array<unsigned char, 2> first{};
   const std::size_t read = std::fread(first.data(), 1, first.size(), stream);
   std::rewind(stream);

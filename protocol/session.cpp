@@ -236,14 +236,16 @@ void ServerSessions::Member::heard_from(const Endpoint& from, std::uint64_t newe
   if (from != endpoint) {
     endpoint = from;
     probe = 0;
-  } else if (probe != 0 && newest_sample >= probe) {
-    reached = from;
+  } else if (probe != 0 && newest_sample >= probe && newest_sample <= newest_sent) {
+    reached = from;  // beyond what was sent, it speaks of a server before this one
   }
 }
 
 std::size_t ServerSessions::write(Member& member, const Message& message, std::span<std::byte> out) noexcept {
-  if (const auto* sample = std::get_if<ForceSample>(&message); sample && member.probe == 0)
-    member.probe = sample->number;
+  if (const auto* sample = std::get_if<ForceSample>(&message)) {
+    if (member.probe == 0) member.probe = sample->number;
+    member.newest_sent = std::max(member.newest_sent, sample->number);
+  }
   return write_sealed({member.session, ++member.sent}, message, member.keys.out, out);
 }
 

@@ -110,6 +110,7 @@ class ServerSessions {
     Endpoint endpoint{};      ///< where answers go
     Endpoint reached{};       ///< that which last proved to receive what is sent there
     std::uint64_t probe = 0;  ///< number of the first sample sent to `endpoint` since it became that; 0: none
+    std::uint64_t newest_sent = 0;  ///< number of the newest sample sent to the client
     std::uint8_t tool = 0;
     Time last_heard{};  ///< a tool state, or its beginning
     SessionKeys keys{};

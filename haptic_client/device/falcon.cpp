@@ -46,8 +46,11 @@ bool is_text(char byte) {
 
 std::vector<std::byte> read_firmware(const std::filesystem::path& file) {
   constexpr std::size_t kLeast = 1024, kMost = 65536;  // bytes: beyond, it is the wrong file
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file))
+  std::error_code ignored;                             // a pipe would wait for a writer, a device has no end
+  const bool is_file = std::filesystem::is_regular_file(file, ignored);
+  std::ifstream in;
+  if (is_file) in.open(file, std::ios::binary);
+  if (!is_file || !in)
     fail("{}: no such firmware image; Palpate ships none, it belongs to the maker of the device",
          file.string());
   const std::vector<char> bytes{std::istreambuf_iterator<char>(in), {}};

@@ -112,14 +112,6 @@ Json whole_error_report(const Observation& observation) {
 
 namespace {
 
-/// "at most 5.9 %", or what is known of it.
-std::string total_text(const Json& rendered) {
-  if (!rendered["total_percent"].is_null())
-    return fmt::format("at most {} %", two_figures(rendered["total_percent"].get<double>()));
-  return fmt::format("{} %, and what mesh and time step add to it, which is not known",
-                     two_figures(rendered["hand_percent"].get<double>()));
-}
-
 double percent_of_ticks(const Json& rendered, const char* key) {
   const double ticks = rendered["judged_ticks"].get<double>() + rendered["unjudged_ticks"].get<double>() +
                        rendered["unsettled_ticks"].get<double>();
@@ -159,6 +151,14 @@ void print_age(const Json& tool) {
 
 }  // namespace
 
+std::string total_text(const Json& rendered) {
+  constexpr const char* kOf = "% of its root mean square in the mean";
+  if (!rendered["total_percent"].is_null())
+    return fmt::format("at most {} {}", two_figures(rendered["total_percent"].get<double>()), kOf);
+  return fmt::format("{} {}, and what mesh and time step add to it, which is not known",
+                     two_figures(rendered["hand_percent"].get<double>()), kOf);
+}
+
 void print_whole_error(const Json& tool) {
   const Json& rendered = tool["rendered"];
   if (rendered["laws"].empty()) return;
@@ -166,11 +166,9 @@ void print_whole_error(const Json& tool) {
     fmt::print("  error   of the force on the hand: not known, as nothing was touched{}\n{}",
                rendered["unsettled_ticks"] > 0 ? " that could be judged" : "", unsettled_text(rendered));
   } else {
-    fmt::print(
-        "  error   of the force on the hand: {} of its root mean square in the mean; at the worst tick {} %, "
-        "mesh and time step aside\n{}",
-        total_text(rendered), two_figures(rendered["hand_max_percent"].get<double>()),
-        unsettled_text(rendered));
+    fmt::print("  error   of the force on the hand: {}; at the worst tick {} %, mesh and time step aside\n{}",
+               total_text(rendered), two_figures(rendered["hand_max_percent"].get<double>()),
+               unsettled_text(rendered));
   }
   print_age(tool);
   const auto row = [&](const char* name, const char* percent, const std::string& how) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <optional>
+#include <string>
 
 #include "common/report.h"
 #include "haptic_client/evaluation/observation.h"
@@ -26,6 +27,10 @@ std::optional<double> unexplained_age_ms(const Json& tool);
 /// Error of the force on the hand, from the organ's mesh to the motors: `rendered.total_percent` and its
 /// parts (session/REPORT.md); null where nobody knows.
 Json whole_error_report(const Observation& observation);
+
+/// Returns the total of that report in words: "at most 5.9 % of its root mean square in the mean", or what is
+/// known of it.
+std::string total_text(const Json& rendered);
 
 /// Prints that report of a tool for people, on stdout, the total first; nothing before the first sample.
 void print_whole_error(const Json& tool);

@@ -14,6 +14,7 @@
 #include "sim_server/commands/explain.h"
 #include "sim_server/commands/resection_log.h"
 #include "sim_server/explicit/mass_scaling.h"
+#include "sim_server/models/deformation_models.h"
 #include "sim_server/scene/scene_print.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/virtual_session.h"
@@ -223,7 +224,8 @@ int record(const RecordOptions& options) {
                          .delay = from_seconds(options.delay_ms / 1e3),
                          .parts = options.parts,
                          .tool = options.tool - 1,
-                         .scene = print_of(scene, simulation.mesh()),
+                         .scene = print_of(scene, simulation.mesh(),
+                                           model_of(scene.deformation).body_to_text(scene.deformation)),
                          .clock = options.real_time ? &clock : nullptr};
   VirtualSession session(simulation, motions, link, capture, &errors);
   const Time start = now();

@@ -16,6 +16,7 @@
 #include "protocol/udp_socket.h"
 #include "sim_server/commands/live_view.h"
 #include "sim_server/commands/pictures.h"
+#include "sim_server/models/deformation_models.h"
 #include "sim_server/scene/scene_print.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/captured_forces.h"
@@ -111,7 +112,9 @@ void make_session(const std::filesystem::path& capture, std::size_t answers, con
 void require_scene_of(const CapturedForces& forces, const ViewOptions& options, const Scene& scene,
                       const Simulation& simulation) {
   if (!forces.scene) return;
-  const std::string differing = protocol::differences(*forces.scene, print_of(scene, simulation.mesh()));
+  const std::string differing = protocol::differences(
+      *forces.scene,
+      print_of(scene, simulation.mesh(), model_of(scene.deformation).body_to_text(scene.deformation)));
   if (differing.empty()) return;
   fail("{}: {} was recorded of another scene, which differs by: {}; give the scene file of the recording",
        options.scene->string(), options.capture.string(), differing);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "common/error.h"
+#include "common/files.h"
 #include "common/log.h"
 #include "common/memory_budget.h"
 #include "sim_server/mesh/cursor.h"
@@ -367,9 +368,7 @@ class MeshReader {
 };
 
 std::string read_bytes(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) fail("{}: no such file", file.string());
-  if (!std::filesystem::is_regular_file(file, ignored)) fail("{}: not a file", file.string());
+  require_file(file, "a mesh");
   std::ifstream in(file, std::ios::binary);
   const auto size = std::filesystem::file_size(file);
   if (static_cast<double>(size) > kSmallFile)

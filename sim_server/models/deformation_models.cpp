@@ -21,6 +21,12 @@
 namespace palpate::sim {
 namespace {
 
+template <class Settings>
+std::string body_text(const Settings& settings) {
+  if constexpr (requires { Settings::kOfBody; }) return settings.to_text();
+  return {};
+}
+
 /// `row` with what the class of a model and its settings do. `Settings`: structs with `kKeys`, `read` and
 /// `to_text`.
 template <class Model, class... Settings>
@@ -42,6 +48,9 @@ constexpr DeformationModelRow row_of(DeformationModelRow row) {
   };
   row.to_text = [](const DeformationSettings& settings) {
     return (std::string() + ... + settings.of<Settings>().to_text());
+  };
+  row.body_to_text = [](const DeformationSettings& settings) {
+    return (std::string() + ... + body_text(settings.of<Settings>()));
   };
   row.has_settings = []([[maybe_unused]] std::type_index type) {
     return ((type == typeid(Settings)) || ...);

@@ -13,6 +13,7 @@ namespace palpate::sim {
 struct RigidSettings {
   double stiffness = 800;  ///< of a contact, N/m, [1e-3, 1e6]
 
+  static constexpr bool kOfBody = true;
   static constexpr std::array<std::string_view, 1> kKeys{"stiffness"};
   static RigidSettings read(const Config& config);
   std::string to_text() const;

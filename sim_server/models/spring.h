@@ -15,6 +15,7 @@ struct SpringSettings {
   std::optional<Vec3> stiffness{};           ///< `spring_stiffness`: along x, y, z, N/m, [1e-3, 1e6]
   std::optional<double> hardening_length{};  ///< m, [1e-4, 10]; absent: linear
 
+  static constexpr bool kOfBody = true;
   static constexpr std::array<std::string_view, 2> kKeys{"spring_stiffness", "hardening_length"};
   static SpringSettings read(const Config& config);
   std::string to_text() const;

@@ -49,6 +49,15 @@ std::uint32_t print_of_material(const Scene& scene, const TetMesh& mesh) {
   return print.value();
 }
 
+void add_reach(const Reach& reach, Print& print) {
+  print.add(reach.index());
+  if (const auto* box = std::get_if<Box>(&reach)) print.add(box->min), print.add(box->max);
+  if (const auto* cone = std::get_if<Cone>(&reach)) {
+    print.add(cone->apex), print.add(cone->axis);
+    print.add(cone->half_angle, cone->depth, cone->around);
+  }
+}
+
 void add_region(const Region& region, Print& print) {
   print.add(region.surface_tag);
   if (region.box) print.add(region.box->min), print.add(region.box->max);
@@ -73,24 +82,28 @@ std::uint32_t print_of_supports(const Scene& scene) {
   return print.value();
 }
 
-std::uint32_t print_of_tools(const Scene& scene) {
+std::uint32_t print_of_tools(const Scene& scene, const std::string& body) {
   Print print;
   print.add(scene.deformation.model);
+  print.add(body);
   for (const ToolSettings& tool : scene.tools) {
     print.add(tool.shape.radius, tool.shape.friction, tool.shape.length);
     if (const auto& trocar = tool.shape.trocar) print.add(trocar->pivot_W), print.add(trocar->shaft_radius);
     if (tool.blade) print.add(*tool.blade);
+    if (tool.reach) add_reach(*tool.reach, print);
+    if (tool.grasp_place) print.add(*tool.grasp_place);
+    print.add(tool.grasp_buttons, tool.cut_buttons);
   }
   return print.value();
 }
 
 }  // namespace
 
-protocol::ScenePrint print_of(const Scene& scene, const TetMesh& mesh) {
+protocol::ScenePrint print_of(const Scene& scene, const TetMesh& mesh, const std::string& body) {
   return {.mesh = print_of_mesh(mesh),
           .material = print_of_material(scene, mesh),
           .supports = print_of_supports(scene),
-          .tools = print_of_tools(scene)};
+          .tools = print_of_tools(scene, body)};
 }
 
 }  // namespace palpate::sim

@@ -13,6 +13,7 @@ struct RayleighDamping {
   double mass = 10;         ///< `rayleigh_mass`, 1/s, [0, 1e4]
   double stiffness = 1e-4;  ///< `rayleigh_stiffness`, s, [0, 1]
 
+  static constexpr bool kOfBody = true;
   static constexpr std::array<std::string_view, 2> kKeys{"rayleigh_mass", "rayleigh_stiffness"};
   static RayleighDamping read(const Config& config);
   std::string to_text() const;

@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <map>
+#include <sys/stat.h>
 
 #include "protocol/codec.h"
 #include "tests/support/captures.h"
@@ -161,6 +162,9 @@ TEST_CASE("what is no capture is refused with what to do", "[capture]") {
   CHECK(error_of<CaptureReader>(folder.path() / "none") == path + "/none: no such file");
   CHECK(error_of<CaptureReader>(folder.path()) == path + ": is a folder; name a capture file in it");
   CHECK(error_of<CaptureReader>("-") == "-: no such file");
+  REQUIRE(mkfifo((folder.path() / "pipe").c_str(), 0600) == 0);  // would wait for a writer
+  CHECK(error_of<CaptureReader>(folder.path() / "pipe") ==
+        path + "/pipe: is no file, but a pipe or a device; write what it gives to a file first");
   const std::string read = "pcap and pcapng files are read; `editcap -F pcap IN OUT` converts many others";
   CHECK(refusal({}) == ": is empty (0 bytes), so no capture; " + read);
   CHECK(refusal(bytes("68656c6c6f2c20776f726c64210a")) ==

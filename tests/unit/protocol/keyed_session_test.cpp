@@ -212,6 +212,8 @@ TEST_CASE("a client that moved is reached once it has used a sample that was sen
   REQUIRE(n.to_client(on_its_way));
   REQUIRE(n.to_server(n.state(used + 1), remote));
   CHECK_FALSE(n.server.holder(0)->is_reached());
+  REQUIRE(n.to_server(n.state(used + 1000), remote));  // a number of the server before this one
+  CHECK_FALSE(n.server.holder(0)->is_reached());
   REQUIRE(n.to_client(n.sample()));
   REQUIRE(n.to_server(n.state(used + 1), remote));
   CHECK_FALSE(n.server.holder(0)->is_reached());
