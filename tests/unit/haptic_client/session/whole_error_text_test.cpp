@@ -41,6 +41,7 @@ TEST_CASE("report and page name the same parts of the error on the hand") {
 TEST_CASE("report: a total of which the mesh's share is not known says so after what is known") {
   CHECK(total_text({{"total_percent", 5.9}, {"hand_percent", 0.4}}) ==
         "at most 5.9 % of its root mean square in the mean");
-  CHECK(total_text({{"total_percent", nullptr}, {"hand_percent", 18}}) ==
-        "18 % of its root mean square in the mean, and what mesh and time step add to it, which is not known");
+  CHECK(
+      total_text({{"total_percent", nullptr}, {"hand_percent", 18}}) ==
+      "18 % of its root mean square in the mean, and what mesh and time step add to it, which is not known");
 }
