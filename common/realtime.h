@@ -5,7 +5,7 @@
 
 namespace palpate {
 
-/// What a thread is for; the order is that of priority, a thread waits for none of those below it.
+/// Task of a thread, in the order of priority: a thread waits for none of those below it.
 enum class ThreadRole {
   kHaptic,      ///< a tick waits for nobody
   kNetwork,     ///< a force that waits behind a step of the simulation is older than it need be

@@ -59,12 +59,10 @@ std::string remedy_of(const std::error_code& error) {
     return "a firewall of this machine rejects it (`nft list ruleset` shows it): let UDP to that port out";
   if (error == std::errc::permission_denied)
     return "a firewall on the way rejects it, or it is a broadcast address: let UDP to that port through, or "
-           "give "
-           "the address of one machine";
+           "give the address of one machine";
   if (error == std::errc::host_unreachable)
     return "the machine is off, or a firewall on it or on the way rejects UDP: `ping` it; if it answers, let "
-           "UDP to "
-           "that port through";
+           "UDP to that port through";
   if (error == std::errc::network_unreachable)
     return "this machine has no way there: is the address right, and this machine in the same network or "
            "VPN?";

@@ -33,41 +33,35 @@ std::string how_of(const DiscretisationError& error) {
   return "";
 }
 
-double known_part(const Observation& observation, double (*of)(const RenderedErrorParts&)) noexcept {
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// A part of the error on the hand, % of the root mean square of the force; NaN where nothing was judged.
+template <double RenderedErrorParts::*kPart>
+double part_percent(const Observation& observation) noexcept {
   const RenderedError& rendered = observation.scoring().rendered();
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   if (rendered.judged() == 0) return kUnknown;
   const RenderedErrorParts parts = rendered.parts();
-  return std::isnan(parts.hand.mean_percent) ? kUnknown : of(parts);
+  return std::isnan(parts.hand.mean_percent) ? kUnknown : parts.*kPart;
+}
+
+double worst_percent(const Observation& observation) noexcept {
+  const RenderedError& rendered = observation.scoring().rendered();
+  return rendered.judged() == 0 ? kUnknown : rendered.parts().hand.max_of_rms_percent;
 }
 
 }  // namespace
 
 const std::array<HandError, 6> kHandErrors{{
     {"", "total_percent", "",
-     [](const Observation& o) noexcept {
-       return o.total_percent().value_or(std::numeric_limits<double>::quiet_NaN());
-     }},
-    {"extrapolation", "extrapolation_percent", "",
-     [](const Observation& o) noexcept {
-       return known_part(o, [](const RenderedErrorParts& parts) { return parts.extrapolation_percent; });
-     }},
+     [](const Observation& o) noexcept { return o.total_percent().value_or(kUnknown); }},
+    {"extrapolation", "extrapolation_percent", "", part_percent<&RenderedErrorParts::extrapolation_percent>},
     {"outages", "outages_percent", "the law where no sample came for more than 300 ms",
-     [](const Observation& o) noexcept {
-       return known_part(o, [](const RenderedErrorParts& parts) { return parts.outages_percent; });
-     }},
+     part_percent<&RenderedErrorParts::outages_percent>},
     {"fades", "fades_percent", "soft start, and fades of forces that were old or not settled",
-     [](const Observation& o) noexcept {
-       return known_part(o, [](const RenderedErrorParts& parts) { return parts.fades_percent; });
-     }},
+     part_percent<&RenderedErrorParts::fades_percent>},
     {"limits", "limits_percent", "passivity, damping, largest force and slew",
-     [](const Observation& o) noexcept {
-       return known_part(o, [](const RenderedErrorParts& parts) { return parts.limits_percent; });
-     }},
-    {"worst tick", "hand_max_percent", "",
-     [](const Observation& o) noexcept {
-       return known_part(o, [](const RenderedErrorParts& parts) { return parts.hand.max_of_rms_percent; });
-     }},
+     part_percent<&RenderedErrorParts::limits_percent>},
+    {"worst tick", "hand_max_percent", "", worst_percent},
 }};
 
 std::optional<double> unexplained_age_ms(const Json& tool) {

@@ -47,7 +47,7 @@ struct DeformationModelRow {
   std::vector<std::string_view> (*keys)() = nullptr;
   void (*read)(const Config&, DeformationSettings&) = nullptr;
   std::string (*to_text)(const DeformationSettings&) = nullptr;
-  /// The same of those settings that say what the body is (`kOfBody`), not how exactly its motion is found.
+  /// Returns as text the settings that say what the body is (`kOfBody`), not how exactly its motion is found.
   std::string (*body_to_text)(const DeformationSettings&) = nullptr;
   bool (*has_settings)(std::type_index) = nullptr;
 

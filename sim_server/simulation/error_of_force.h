@@ -58,7 +58,7 @@ class ErrorOfForce {
     MeshResolution mesh;
     ErrorMeans steps = {};
   };
-  /// What a study measured, and where it holds.
+  /// Errors that a study measured, and the place and the force up to which they hold.
   struct Studied {
     DiscretisationErrors errors;
     Box near;                // where it pressed, at rest, m

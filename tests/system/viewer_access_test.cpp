@@ -187,35 +187,32 @@ TEST_CASE("viewer: each run has a token of its own, with a key and without") {
   CHECK(Watched().page.token != Watched().page.token);
 }
 
+/// A page beyond this machine: refused, and with `--insecure` served, with a warning.
+static void check_wants_insecure(const std::vector<std::string>& requested, const char* served) {
+  const auto said = output_of("sim_server", requested, 2);
+  CHECK(std::ranges::count(said, '\n') == 1);
+  for (const char* part : {"--viewer: 0.0.0.0:0 is not this machine", "ssh -L", "--insecure"})
+    CHECK(said.find(part) != std::string::npos);
+  auto insecure = requested;
+  insecure.insert(insecure.end(), {"--insecure", "--seconds", "0.1"});
+  const auto warned = output_of("sim_server", insecure, 0);
+  CHECK(warned.find("--viewer: 0.0.0.0:0 is not this machine") != std::string::npos);
+  CHECK(warned.find(served) != std::string::npos);
+}
+
 TEST_CASE("viewer: beyond this machine the page is served to who says that it is insecure") {
   const TemporaryFolder folder;
   const std::string key = (folder.path() / "palpate.key").string();
   output_of("sim_server", {"keygen", key}, 0);
   const std::vector<std::string> requested{"run",   kScene, "--listen", "127.0.0.1:0",
                                            "--key", key,    "--viewer", "0.0.0.0:0"};
-  const auto said = output_of("sim_server", requested, 2);
-  CHECK(std::ranges::count(said, '\n') == 1);
-  for (const char* part : {"--viewer: 0.0.0.0:0 is not this machine", "ssh -L", "--insecure"})
-    CHECK(said.find(part) != std::string::npos);
-  auto insecure = requested;
-  insecure.insert(insecure.end(), {"--insecure", "--seconds", "0.1"});
-  const auto warned = output_of("sim_server", insecure, 0);
-  CHECK(warned.find("--viewer: 0.0.0.0:0 is not this machine") != std::string::npos);
-  CHECK(warned.find("the live page: http://0.0.0.0:") != std::string::npos);
+  check_wants_insecure(requested, "the live page: http://0.0.0.0:");
 }
 
 TEST_CASE("viewer: a recording, too, is served beyond this machine to who says that it is insecure") {
   const std::vector<std::string> requested{"view", source_dir() + "/tests/wireshark/session.pcap", "--viewer",
                                            "0.0.0.0:0"};
-  const auto said = output_of("sim_server", requested, 2);
-  CHECK(std::ranges::count(said, '\n') == 1);
-  for (const char* part : {"--viewer: 0.0.0.0:0 is not this machine", "ssh -L", "--insecure"})
-    CHECK(said.find(part) != std::string::npos);
-  auto insecure = requested;
-  insecure.insert(insecure.end(), {"--insecure", "--seconds", "0.1"});
-  const auto warned = output_of("sim_server", insecure, 0);
-  CHECK(warned.find("--viewer: 0.0.0.0:0 is not this machine") != std::string::npos);
-  CHECK(warned.find("the page: http://0.0.0.0:") != std::string::npos);
+  check_wants_insecure(requested, "the page: http://0.0.0.0:");
 }
 
 TEST_CASE("viewer: a port that is taken, or an address that is none, is told in one line") {

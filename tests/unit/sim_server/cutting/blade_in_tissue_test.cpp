@@ -82,7 +82,7 @@ void check_bears_as_never_entire(const Scene& scene) {
 constexpr int kAnything = 600;  // steps
 
 /// A blade and a hot tip on their ways: in how many of `kAnything` steps no answer was found.
-std::uint64_t flagged_by_anything(Scene scene, unsigned seed = 2) {
+std::uint64_t flagged_by_anything(Scene scene, unsigned seed = 2, std::uint64_t most_ran_away = 0) {
   scene.tools[0].reach.reset();
   scene.tools.push_back(scene.tools[0]);
   scene.tools[1].blade.reset();
@@ -131,7 +131,8 @@ std::uint64_t flagged_by_anything(Scene scene, unsigned seed = 2) {
   CHECK(volume == Approx(0.04 * kDepth * 0.04 - totals.volume).epsilon(1e-3));
   const FlaggedSteps& flagged = simulation.flagged();
   CHECK(flagged.threw + flagged.inside_out == 0);
-  return flagged.not_balanced + flagged.tools + flagged.contact + flagged.ran_away;
+  CHECK(flagged.ran_away <= most_ran_away);
+  return flagged.not_balanced + flagged.tools + flagged.contact;
 }
 
 /// A half is pulled while a blade cuts it off, then carried away.
@@ -324,7 +325,8 @@ TEST_CASE("implicit: a blade that goes anywhere, beside a hot tip, leaves a body
   for (const auto& [solver, seed] : {std::pair(Solver::kDirect, 1U), std::pair(Solver::kQuasiNewton, 2U),
                                      std::pair(Solver::kDirect, 7U)}) {
     CAPTURE(solver, seed);
-    CHECK(flagged_by_anything(implicit_scene(ElasticLaw::kCorotational, solver), seed) < kAnything / 20);
+    CHECK(flagged_by_anything(implicit_scene(ElasticLaw::kCorotational, solver), seed, seed == 7 ? 1 : 0) <
+          kAnything / 20);
   }
 }
 
