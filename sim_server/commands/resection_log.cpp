@@ -133,9 +133,13 @@ void write_removals(const std::filesystem::path& file, const Simulation& simulat
 
 ListedRemovals read_removals(const std::filesystem::path& file) {
   const CsvTable table(file);
-  std::vector<std::string> columns{"t_s", "tetrahedron"};
-  const bool has_centres = table.has("x_m");
-  if (has_centres) columns.insert(columns.end(), {"x_m", "y_m", "z_m"});
+  const std::vector<std::string> columns{"t_s", "tetrahedron", "x_m", "y_m", "z_m"};
+  if (table.has("tetrahedron") && !table.has("x_m"))
+    fail(
+        "{}: has no columns x_m, y_m and z_m, m, the middle of each tetrahedron, by which it is known to be "
+        "of "
+        "this mesh; make it again: `sim_server record ... --removals FILE`",
+        file.string());
   const auto values = table.columns(columns);
   ListedRemovals list;
   for (std::size_t row = 0; row < values[0].size(); ++row) {
@@ -146,7 +150,7 @@ ListedRemovals read_removals(const std::filesystem::path& file) {
     if (!(number >= 0 && number <= std::numeric_limits<int>::max() && number == std::floor(number)))
       fail("{}: data row {} names tetrahedron {:g}, which no mesh has", file.string(), row + 1, number);
     list.removals.push_back({t, static_cast<int>(number)});
-    if (has_centres) list.centres.emplace_back(values[2][row], values[3][row], values[4][row]);
+    list.centres.emplace_back(values[2][row], values[3][row], values[4][row]);
   }
   return list;
 }
@@ -161,7 +165,7 @@ void require_removable(const ListedRemovals& list, const std::filesystem::path& 
       fail("{}: data row {} names tetrahedron {}, and the mesh has 0 to {}; is it of another mesh?",
            file.string(), row + 1, number, tetrahedra - 1);
     const Vec3 centre = centre_of_number(simulation.mesh(), number);
-    if (!list.centres.empty() && !((list.centres[row] - centre).norm() <= kRounding))
+    if (!((list.centres[row] - centre).norm() <= kRounding))
       fail(
           "{}: is of another mesh: data row {} has the middle of tetrahedron {} at {} m, the mesh of this "
           "scene "

@@ -23,8 +23,7 @@ void write_resection(const std::filesystem::path& file, const Simulation& simula
 /// The tetrahedra that went, as `--removals` writes and `--remove` reads them. Throws `Error`, of a file that
 /// is none, or, where it is to be used, that names another mesh's (file and row).
 void write_removals(const std::filesystem::path& file, const Simulation& simulation);
-/// List of removals, and where the middle of each tetrahedron was at rest, m; none in a list of no such
-/// columns.
+/// List of removals, and where the middle of each tetrahedron was at rest, m.
 struct ListedRemovals {
   std::vector<Removal> removals;
   std::vector<Vec3> centres;

@@ -101,16 +101,19 @@ TEST_CASE(
     arguments.insert(arguments.end(), {"--remove", folder.write("list.csv", text).string()});
     return output_of("sim_server", arguments, 2);
   };
-  const std::string head = "t_s,tetrahedron\n";
-  for (const char* const rows : {"0,-1\n", "0,0.5\n", "1,7\n0,8\n"}) {
+  const std::string head = "t_s,tetrahedron,x_m,y_m,z_m\n";
+  for (const char* const rows : {"0,-1,0,0,0\n", "0,0.5,0,0,0\n", "1,7,0,0,0\n0,8,0,0,0\n"}) {
     CAPTURE(rows);
     const std::string said = error_of(head + rows);
     CHECK(said.find("list.csv: ") != std::string::npos);
     CHECK(said.find("reading the mesh") == std::string::npos);
   }
-  CHECK(
-      error_of(head + "0,99999999\n").find("data row 1 names tetrahedron 99999999, and the mesh has 0 to ") !=
-      std::string::npos);
+  CHECK(error_of(head + "0,99999999,0,0,0\n")
+            .find("data row 1 names tetrahedron 99999999, and the mesh has 0 to ") != std::string::npos);
+  // Nothing tells a list without places, which an older version wrote, from one of another mesh.
+  const std::string old = error_of("t_s,tetrahedron\n0,7\n");
+  CHECK(old.find("list.csv: has no columns x_m, y_m and z_m, m") != std::string::npos);
+  CHECK(old.find("make it again: `sim_server record ... --removals FILE`") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(folder.path() / "a.pcap"));
 }
 
