@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::array<std::uint8_t, 4> kMagic{'P', 'L', 'P', 'T'};
 constexpr std::array<std::uint8_t, 2> kReserved{};
+constexpr std::size_t kOlderWelcome = 57;  // bytes of payload
 
 static_assert(limits::kToolNumber.most + 1 == kMaxTools);
 static_assert(limits::kPageNumber.most + 1 == ToolState::kNoPage);
@@ -96,6 +97,14 @@ Verdict read_as(std::span<const std::byte> payload, Message& out) noexcept {
   return Verdict::kAccepted;
 }
 
+/// Servers before `Welcome::scene` end their Welcome in front of it: it reads as not known.
+Verdict read_welcome(std::span<const std::byte> payload, Message& out) noexcept {
+  if (payload.size() != kOlderWelcome) return read_as<Welcome>(payload, out);
+  std::array<std::byte, kOlderWelcome + sizeof(ScenePrint)> whole{};
+  std::ranges::copy(payload, whole.begin());
+  return read_as<Welcome>(whole, out);
+}
+
 Verdict read_payload(MessageType type, std::span<const std::byte> payload, Message& out) noexcept {
   switch (type) {
     case MessageType::kHello:
@@ -105,7 +114,7 @@ Verdict read_payload(MessageType type, std::span<const std::byte> payload, Messa
     case MessageType::kChallenge:
       return read_as<Challenge>(payload, out);
     case MessageType::kWelcome:
-      return read_as<Welcome>(payload, out);
+      return read_welcome(payload, out);
     case MessageType::kRefuse:
       return read_as<Refuse>(payload, out);
     case MessageType::kBye:

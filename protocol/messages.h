@@ -100,6 +100,20 @@ struct Challenge {
   }
 };
 
+/// Hashes of what the forces of a scene follow from, by which a capture is known to be of it. All 0: not
+/// known.
+struct ScenePrint {
+  std::uint32_t mesh = 0;      ///< tetrahedra at rest, before the first cut
+  std::uint32_t material = 0;  ///< with inclusions, and what cutting takes
+  std::uint32_t supports = 0;  ///< fixed vertices and loads
+  std::uint32_t tools = 0;     ///< their shapes, and the name of the model
+  bool operator==(const ScenePrint&) const = default;
+  template <class Self, class Visitor>
+  static void fields(Self& m, Visitor&& v) {
+    v(m.mesh), v(m.material), v(m.supports), v(m.tools);
+  }
+};
+
 struct Welcome {
   static constexpr MessageType kType = MessageType::kWelcome;
   Nonce nonce = {};  ///< of the Hello this answers, as is:
@@ -108,10 +122,12 @@ struct Welcome {
   std::uint8_t tool = 0;   ///< the tool of the scene this client holds
   double rate_hz = 0;      ///< steps per second the server aims for; 0 = as fast as it can
   double tool_radius = 0;  ///< m
+  ScenePrint scene{};      ///< of which the forces are
   template <class Self, class Visitor>
   static void fields(Self& m, Visitor&& v) {
     v(m.nonce), v(m.attempt), v(m.server), v(m.tool, limits::kToolNumber), v(m.rate_hz, limits::kRate),
         v(m.tool_radius, limits::kToolRadius);
+    ScenePrint::fields(m.scene, v);
   }
 };
 

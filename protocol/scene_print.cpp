@@ -2,27 +2,9 @@
 
 namespace palpate::protocol {
 
-Endpoint virtual_address(std::uint8_t last, std::uint16_t port) noexcept {
-  return {.address = {192, 0, 2, last}, .port = port};
-}
-
-Endpoint virtual_server() noexcept {
-  return virtual_address(2, 45130);
-}
-
-Nonce nonce_of(const ScenePrint& print) noexcept {
-  return {std::uint64_t{print.mesh} << 32 | print.material,
-          std::uint64_t{print.supports} << 32 | print.tools};
-}
-
-std::optional<ScenePrint> print_in(const Welcome& welcome, const Endpoint& from) noexcept {
-  if (from != virtual_server() || welcome.server == Nonce{}) return {};
-  const auto high = [](std::uint64_t word) { return static_cast<std::uint32_t>(word >> 32); };
-  const auto low = [](std::uint64_t word) { return static_cast<std::uint32_t>(word); };
-  return ScenePrint{.mesh = high(welcome.server[0]),
-                    .material = low(welcome.server[0]),
-                    .supports = high(welcome.server[1]),
-                    .tools = low(welcome.server[1])};
+std::optional<ScenePrint> print_in(const Welcome& welcome) noexcept {
+  if (welcome.scene == ScenePrint{}) return {};
+  return welcome.scene;
 }
 
 std::string differences(const ScenePrint& a, const ScenePrint& b) {

@@ -214,7 +214,7 @@ ServerSessions::Outcome ServerSessions::admit(const Hello& hello, const Key& sha
   member->endpoint = member->reached = from;  // the cookie was sent there
   return {.answer = {{Header{member->session, ++member->sent},
                       Welcome{hello.nonce, hello.attempt, member->server_nonce, member->tool, rate_hz_,
-                              radii_[member->tool]}}}};
+                              radii_[member->tool], scene_}}}};
 }
 
 /// Without a key the answer is that the session is unknown here, with fewer bytes than the client sent.

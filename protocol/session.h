@@ -133,7 +133,7 @@ class ServerSessions {
         nullptr;  ///< the same, or one that others overtook: the pages it asks for are wanted still
     const Telemetry* telemetry = nullptr;
     std::optional<KeyMismatch> mismatch{};  ///< of a Hello whose sender will obey no answer, or gets none
-    const Member* departed = nullptr;       ///< said Bye; valid until the next call
+    const Member* departed = nullptr;       ///< whose session ended by this; valid until the next call
   };
 
   /// Random numbers for a session, should one begin; `session` not 0.
@@ -147,6 +147,9 @@ class ServerSessions {
   ServerSessions(double rate_hz, std::vector<double> tool_radii, const Cookies::Secret& secret = {},
                  std::vector<Key> keys = {})
       : rate_hz_(rate_hz), radii_(std::move(tool_radii)), cookies_(secret), keys_(std::move(keys)) {}
+
+  /// Sets what Welcomes say of the scene from now on; all 0 before.
+  void set_scene(const ScenePrint& scene) noexcept { scene_ = scene; }
 
   /// A datagram that `decode_fields` accepted came.
   Outcome receive(const Datagram& datagram, const Endpoint& from, Time now, const Fresh& fresh,
@@ -164,10 +167,15 @@ class ServerSessions {
   const std::vector<Member>& members() const noexcept { return members_; }
 
   static constexpr Time kTimeout = std::chrono::milliseconds(800);  ///< without a ToolState (STATES.md)
+  /// Time without a ToolState after which a Hello ends the session of its client, who speaks, but is not
+  /// heard. Longer than the 350 ms after which a client that waits for its first tick sends states.
+  static constexpr Time kUnheard = std::chrono::milliseconds(400);
 
  private:
   Outcome greet(const Datagram& datagram, const Hello& hello, const Endpoint& from, Time now,
                 const Fresh& fresh, LinkStats& stats);
+  Outcome challenge(const Hello& hello, const Endpoint& from, Time now) const noexcept;
+  void depart(std::vector<Member>::iterator member) noexcept;
   void spend_cookies() noexcept;
   Outcome admit(const Hello& hello, const Key& shared, const Endpoint& from, Time now, const Fresh& fresh);
   Outcome unknown(const Datagram& datagram, LinkStats& stats) const;
@@ -177,6 +185,7 @@ class ServerSessions {
 
   double rate_hz_;
   std::vector<double> radii_;
+  ScenePrint scene_;
   Cookies cookies_;
   std::vector<Key> keys_;
   std::vector<Member> members_;

@@ -18,6 +18,7 @@
 #include "haptic_client/evaluation/scoring.h"
 #include "haptic_client/extrapolation/extrapolators.h"
 #include "haptic_client/pipeline/pipeline.h"
+#include "protocol/scene_print.h"
 
 namespace palpate::client {
 namespace {
@@ -132,14 +133,18 @@ void require_same_motion(const FromTruth& from, const std::filesystem::path& fil
 }
 
 /// That both captures are of one scene, where both tell of which they are.
-void require_same_scene(const CaptureSurvey& found, const Truth& truth, const std::filesystem::path& file,
+void require_same_scene(const CapturedRun& run, const Truth& truth, const std::filesystem::path& file,
                         const EvaluateOptions& options) {
-  if (!found.scene || !truth.scene() || *found.scene == *truth.scene()) return;
+  const auto is_of_another = [&](const CapturedLink& link) {
+    return link.scene && truth.scene() && *link.scene != *truth.scene();
+  };
+  const auto other = std::ranges::find_if(run.links, is_of_another);
+  if (other == run.links.end()) return;
   fail(
       "{}: is of another scene than --truth {}, which differs by: {}; record the truth again, of the scene "
       "of "
       "the capture: `sim_server record SCENE --trajectory MOTION --rate 2000 --plain --out {}`",
-      file.string(), options.truth->string(), protocol::differences(*found.scene, *truth.scene()),
+      file.string(), options.truth->string(), protocol::differences(*other->scene, *truth.scene()),
       options.truth->string());
 }
 
@@ -158,8 +163,8 @@ Evaluation run(const std::filesystem::path& file, const std::vector<std::string>
   const CaptureSurvey found = survey(file, [](double) {});
   if (!found.trouble.empty())
     log::warning("{}: {}; what was read until then is evaluated", file.string(), found.trouble);
-  if (truth != nullptr) require_same_scene(found, *truth, file, options);
   Evaluation e = start_evaluation(found, laws, options, truth);
+  if (truth != nullptr) require_same_scene(found.runs[e.run], *truth, file, options);
   CapturedSession session(file, e.run);
   std::optional<protocol::ToolState> before;
   ErrorSums ignored;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "protocol/earlier_ticks.h"
+#include "protocol/scene_print.h"
 
 namespace palpate::client {
 using namespace protocol;
@@ -54,13 +55,22 @@ std::optional<std::size_t> CaptureSorter::sort(const CapturedDatagram& captured,
     return sort_states(ticks_of(datagram), header, captured.from);
   if (std::holds_alternative<ForceSample>(datagram.message)) return sort_sample(header, captured.to, true);
   if (std::holds_alternative<SurfacePage>(datagram.message)) return sort_sample(header, captured.to, false);
-  if (const auto* welcome = std::get_if<Welcome>(&datagram.message)) {
-    if (const auto scene = print_in(*welcome, captured.from)) scene_ = scene;
-    // Again, in mid-session: it has a number, too.
-    if (const Place place = known(captured.to, header.session); place.link != nullptr)
-      place.link->down.accept(header.sequence);
-  }
+  if (const auto* welcomed = std::get_if<Welcome>(&datagram.message)) welcome(*welcomed, header, captured.to);
   return {};
+}
+
+/// Stands before the first tick of its session; again, in mid-session, it has a number, too. What it says of
+/// the scene is taken once: a second one of another scene is forged.
+void CaptureSorter::welcome(const Welcome& welcome, const Header& header, const Endpoint& client) {
+  if (scenes_.size() < kMost) scenes_.emplace(header.session, print_in(welcome));
+  if (const Place place = known(client, header.session); place.link != nullptr)
+    place.link->down.accept(header.sequence);
+}
+
+CapturedLink& CaptureSorter::add_link(CapturedRun& run, std::uint64_t session) {
+  const auto scene = scenes_.find(session);
+  run.links.push_back({.session = session, .scene = scene == scenes_.end() ? std::nullopt : scene->second});
+  return run.links.back();
 }
 
 void CaptureSorter::add_tick(CapturedRun& run, const ToolState& tick) {
@@ -100,8 +110,7 @@ std::optional<std::size_t> CaptureSorter::sort_sample(const Header& header, cons
   if (run == nullptr) {  // a capture that begins between a tool state and its answer
     run = start_run(client);
     if (run == nullptr) return {};
-    run->links.push_back({.session = header.session});
-    link = &run->links.back();
+    link = &add_link(*run, header.session);
   }
   if (link != nullptr && !link->down.accept(header.sequence)) return {};
   run->samples += is_sample ? 1 : 0;
@@ -115,8 +124,7 @@ CaptureSorter::Place CaptureSorter::place_of(const ToolState& state, const Endpo
   CapturedRun* run = newest_run(client);
   if (run == nullptr || state.tick + kShuffled < run->newest_tick) run = start_run(client);
   if (run == nullptr || run->links.size() == kMost) return {};
-  run->links.push_back({.session = session});
-  return {run, &run->links.back()};
+  return {run, &add_link(*run, session)};
 }
 
 /// The server draws the number of a session: whoever has it goes on with that session, also from another

@@ -1,12 +1,12 @@
 #pragma once
 /// Which datagrams of a capture belong together.
 #include <limits>
+#include <map>
 #include <optional>
 #include <vector>
 
 #include "protocol/capture.h"
 #include "protocol/replay_window.h"
-#include "protocol/scene_print.h"
 
 namespace palpate::client {
 
@@ -32,6 +32,7 @@ struct CapturedDirection {
 /// Session of a run, as the capturing machine saw it.
 struct CapturedLink {
   std::uint64_t session = 0;
+  std::optional<protocol::ScenePrint> scene{};  ///< of which its forces are, if its Welcome tells
   CapturedDirection up{}, down{};
 };
 
@@ -63,8 +64,6 @@ class CaptureSorter {
   std::uint64_t refused() const { return refused_; }  ///< with our magic, but not acceptable
   std::uint64_t omitted() const { return omitted_; }  ///< of too many runs or sessions
   std::optional<int> other_version() const { return other_version_; }
-  /// Scene of a recording in virtual time; nothing of other captures.
-  const std::optional<protocol::ScenePrint>& scene() const { return scene_; }
 
  private:
   struct Place {
@@ -77,6 +76,9 @@ class CaptureSorter {
   Place place_of(const protocol::ToolState& state, const protocol::Endpoint& client, std::uint64_t session);
   std::optional<std::size_t> sort_states(std::span<const protocol::ToolState> ticks,
                                          const protocol::Header& header, const protocol::Endpoint& client);
+  CapturedLink& add_link(CapturedRun& run, std::uint64_t session);
+  void welcome(const protocol::Welcome& welcome, const protocol::Header& header,
+               const protocol::Endpoint& client);
   static void add_tick(CapturedRun& run, const protocol::ToolState& tick);
   std::optional<std::size_t> sort_sample(const protocol::Header& header, const protocol::Endpoint& client,
                                          bool is_sample);
@@ -84,7 +86,7 @@ class CaptureSorter {
   std::vector<CapturedRun> runs_;
   std::uint64_t ours_ = 0, refused_ = 0, omitted_ = 0;
   std::optional<int> other_version_;
-  std::optional<protocol::ScenePrint> scene_;
+  std::map<std::uint64_t, std::optional<protocol::ScenePrint>> scenes_;  // by session
 };
 
 }  // namespace palpate::client

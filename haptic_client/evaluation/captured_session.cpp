@@ -41,7 +41,6 @@ CaptureSurvey survey(const std::filesystem::path& file, const ReadingProgress& p
           .refused = sorter.refused(),
           .omitted = sorter.omitted(),
           .other = reader.packets() - sorter.ours() - sorter.refused(),
-          .scene = sorter.scene(),
           .trouble = reader.trouble()};
 }
 

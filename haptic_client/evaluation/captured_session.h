@@ -15,8 +15,7 @@ namespace palpate::client {
 struct CaptureSurvey {
   std::vector<CapturedRun> runs;
   std::uint64_t packets = 0, ours = 0, refused = 0, omitted = 0, other = 0;
-  std::optional<protocol::ScenePrint> scene;  ///< of a recording in virtual time
-  std::string trouble;                        ///< why the reading ended early; empty if it did not
+  std::string trouble;  ///< why the reading ended early; empty if it did not
 };
 
 using ReadingProgress = std::function<void(double fraction)>;

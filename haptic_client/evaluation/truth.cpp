@@ -12,9 +12,11 @@ constexpr double kSlowest = 200;  // Hz
 
 Truth::Truth(const std::filesystem::path& file, const std::function<void(double fraction)>& progress) {
   const CaptureSurvey found = survey(file, progress);
-  scene_ = found.scene;
   const auto longest =
       std::ranges::max_element(found.runs, [](const auto& a, const auto& b) { return a.ticks < b.ticks; });
+  for (const CapturedLink& link : longest->links) {
+    if (link.scene) scene_ = link.scene;
+  }
   CapturedSession session(file, static_cast<std::size_t>(longest - found.runs.begin()));
   for (CapturedTick tick; session.next(tick);) {
     if (!tick.arrived) continue;

@@ -7,7 +7,7 @@
 #include "common/force_jumps.h"
 #include "common/time.h"
 #include "common/types.h"
-#include "protocol/scene_print.h"
+#include "protocol/messages.h"
 
 namespace palpate::client {
 
@@ -25,7 +25,9 @@ class Truth {
   /// Returns how far from `p` (m, world) the tool of the truth was at `t`; none outside its samples.
   std::optional<double> distance(const Vec3& p, Time t) const noexcept;
   double rate_hz() const noexcept { return rate_hz_; }
-  /// Scene that it was recorded of in virtual time; nothing where it was not.
+  std::size_t samples() const noexcept { return points_.size(); }
+  std::size_t flagged() const noexcept;  ///< samples
+  /// Scene of its forces; nothing where the capture does not tell.
   const std::optional<protocol::ScenePrint>& scene() const noexcept { return scene_; }
   /// Snaps of the force over the whole capture; nothing where it has fewer than 2000 samples a second.
   std::optional<ForceJumps> snaps() const;

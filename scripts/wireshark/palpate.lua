@@ -149,6 +149,9 @@ local function read_payload(d, tvb, tree)
   local branch = tree:add(tvb:range(P.header, size), P.type_names[d.type])
   local r = new_reader(size > 0 and tvb:range(P.header, size) or nil, branch)
   read_message[d.type](r)
+  -- Servers before "scene" end their Welcome in front of it.
+  local is_older = d.type == TYPE.Welcome and d.payload == 57 and r.at == 57
+  r.short = r.short and not is_older
   if r.short then
     r:fault(branch, d.cut and "cut" or "bad_length", d.cut and "cut short by the capture"
       or ("a payload of %d bytes is too short for this type"):format(d.payload))

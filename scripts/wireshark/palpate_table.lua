@@ -48,6 +48,10 @@ return {
           within = {0, 1000000},
         },
         {name = "tool_radius", type = "f64", unit = "m", about = "m", within = {0, 1, true}},
+        {name = "scene.mesh", type = "u32", about = "tetrahedra at rest, before the first cut"},
+        {name = "scene.material", type = "u32", about = "with inclusions, and what cutting takes"},
+        {name = "scene.supports", type = "u32", about = "fixed vertices and loads"},
+        {name = "scene.tools", type = "u32", about = "their shapes, and the name of the model"},
       },
     },
     {

@@ -36,8 +36,9 @@ void watch(const ForcePlayer& player, const NetLink& link, std::optional<double>
 }  // namespace
 
 int serve_replay(const ReplayOptions& options) {
-  const CapturedForces forces = read_captured_forces(options.capture);
+  const CapturedForces forces = read_captured_forces(options.capture).front();
   protocol::ServerSessions sessions = sessions_for(options.listen, forces.rate_hz(), {forces.tool_radius});
+  if (forces.scene) sessions.set_scene(*forces.scene);
   protocol::UdpSocket socket = open_socket(options.listen);
   SimMailboxes mailboxes;
   ForcePlayer player(forces, mailboxes);

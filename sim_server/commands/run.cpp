@@ -27,6 +27,7 @@
 #include "sim_server/commands/run_news.h"
 #include "sim_server/explicit/mass_scaling.h"
 #include "sim_server/models/deformation_models.h"
+#include "sim_server/scene/scene_print.h"
 #include "sim_server/scene_file/read_scene.h"
 #include "sim_server/serving/net_link.h"
 #include "sim_server/simulation/setup_times.h"
@@ -344,6 +345,8 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
   if (studied && scene.rate_hz == 0) studied->errors.time_step = {};  // steps are as clients ask for them
   ErrorOfForce errors(scene, simulation, studied);
   warn_if_coarse(errors, simulation, scene);
+  sessions.set_scene(
+      print_of(scene, simulation.mesh(), model_of(scene.deformation).body_to_text(scene.deformation)));
   Json report = describe_scene(scene, simulation, now() - begin, progress);
   SimMailboxes mailboxes;
   const Time start = now();

@@ -4,6 +4,8 @@
 #include <fmt/core.h>
 #include <limits>
 #include <memory>
+#include <ranges>
+#include <span>
 #include <thread>
 
 #include "common/clock.h"
@@ -12,6 +14,7 @@
 #include "common/log.h"
 #include "common/progress.h"
 #include "common/realtime.h"
+#include "protocol/scene_print.h"
 #include "protocol/session.h"
 #include "protocol/udp_socket.h"
 #include "sim_server/commands/live_view.h"
@@ -44,11 +47,13 @@ void show_captured(const CapturedAnswer& answer, Picture& picture) {
   picture.step_ms = 1e-6 * static_cast<double>(sample.step_ns);
 }
 
-std::size_t tools_in(const std::filesystem::path& capture) {
-  std::size_t tools = 1;
-  read_captured_steps(
-      capture, [](std::uint64_t, const protocol::ToolState&) {},
-      [&](const CapturedAnswer& answer) { tools = std::max<std::size_t>(tools, answer.sample.tool + 1U); });
+/// Returns the tools that sessions hold. Where several held one, it is that of the longest.
+std::vector<Tool> tools_of(std::span<const CapturedForces> sessions) {
+  std::vector<Tool> tools;
+  for (const CapturedForces& session : std::views::reverse(sessions)) {
+    if (session.tool >= tools.size()) tools.resize(session.tool + 1U);
+    tools[session.tool] = {.radius = session.tool_radius};
+  }
   return tools;
 }
 
@@ -108,16 +113,19 @@ void make_session(const std::filesystem::path& capture, std::size_t answers, con
                  1e-6 * static_cast<double>(session.bytes().size()));
 }
 
-/// That the capture is of this scene, where it tells of which it is.
-void require_scene_of(const CapturedForces& forces, const ViewOptions& options, const Scene& scene,
-                      const Simulation& simulation) {
-  if (!forces.scene) return;
-  const std::string differing = protocol::differences(
-      *forces.scene,
-      print_of(scene, simulation.mesh(), model_of(scene.deformation).body_to_text(scene.deformation)));
-  if (differing.empty()) return;
-  fail("{}: {} was recorded of another scene, which differs by: {}; give the scene file of the recording",
-       options.scene->string(), options.capture.string(), differing);
+/// That the sessions of the capture are of this scene, where they tell of which they are.
+void require_scene_of(std::span<const CapturedForces> sessions, const ViewOptions& options,
+                      const Scene& scene, const Simulation& simulation) {
+  const protocol::ScenePrint given =
+      print_of(scene, simulation.mesh(), model_of(scene.deformation).body_to_text(scene.deformation));
+  for (const CapturedForces& session : sessions) {
+    if (!session.scene || *session.scene == given) continue;
+    fail("{}: {} was recorded of another scene, which differs by: {}{}; give the scene file of the recording",
+         options.scene->string(), options.capture.string(), protocol::differences(*session.scene, given),
+         sessions.size() == 1
+             ? ""
+             : fmt::format(" (its session of {:.1f} s with tool {})", session.seconds(), session.tool + 1));
+  }
 }
 
 void report_how_far_off(const CapturedRerun& rerun, const std::filesystem::path& file, const Scene& scene) {
@@ -147,7 +155,8 @@ int view_capture(const ViewOptions& options) {
   if (!address) fail("--viewer: off would show nothing; give a port");
   require_free(*address);
   require_near(address->endpoint, options.insecure, "whoever reaches it sees the recording");
-  const CapturedForces forces = read_captured_forces(options.capture);
+  const std::vector<CapturedForces> sessions = read_captured_forces(options.capture);
+  const CapturedForces& forces = sessions.front();
   SceneFacts facts;
   std::optional<Scene> scene;
   std::optional<Simulation> simulation;
@@ -158,13 +167,13 @@ int view_capture(const ViewOptions& options) {
     const auto condensed = open_condensed(options.cache, *scene);
     simulation.emplace(*scene, std::ref(progress), cache ? &*cache : nullptr,
                        condensed ? &*condensed : nullptr);
-    require_scene_of(forces, options, *scene, *simulation);
+    require_scene_of(sessions, options, *scene, *simulation);
     simulation->set_cut_options({.keeps_log = false});
     facts = facts_of(*scene, *simulation);
   } else {
     facts.title = options.capture.filename().string();
     facts.file = options.capture.string();
-    facts.tools.resize(tools_in(options.capture), Tool{.radius = forces.tool_radius});
+    facts.tools = tools_of(sessions);
   }
   facts.rate_hz = forces.rate_hz();
   facts.recorded = true;

@@ -1,12 +1,14 @@
 #include "sim_server/serving/captured_forces.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 
 #include "common/error.h"
 #include "common/log.h"
 #include "protocol/capture.h"
 #include "protocol/codec.h"
+#include "protocol/scene_print.h"
 
 namespace palpate::sim {
 using namespace protocol;
@@ -31,6 +33,7 @@ CapturedForces in_order(const Session& session) {
     if (forces.samples.empty() || sample.tool_t_ns > forces.samples.back().tool_t_ns)
       forces.samples.push_back(sample);
   }
+  forces.tool = forces.samples.front().tool;
   return forces;
 }
 
@@ -45,7 +48,7 @@ double CapturedForces::rate_hz() const {
   return samples.size() < 2 ? 0 : static_cast<double>(samples.size() - 1) / seconds();
 }
 
-CapturedForces read_captured_forces(const std::filesystem::path& capture) {
+std::vector<CapturedForces> read_captured_forces(const std::filesystem::path& capture) {
   CaptureReader reader(capture);
   std::map<std::uint64_t, Session> sessions;
   CapturedDatagram captured;
@@ -56,22 +59,25 @@ CapturedForces read_captured_forces(const std::filesystem::path& capture) {
     if (const auto* sample = std::get_if<ForceSample>(&datagram.message))
       sessions[datagram.header.session].samples.emplace(sample->number, *sample);
     if (const auto* welcome = std::get_if<Welcome>(&datagram.message)) {
-      sessions[datagram.header.session].tool_radius = welcome->tool_radius;
-      sessions[datagram.header.session].scene = print_in(*welcome, captured.from);
+      Session& session = sessions[datagram.header.session];
+      if (session.tool_radius > 0) continue;  // it comes again in mid-session; another one is forged
+      session.tool_radius = welcome->tool_radius;
+      session.scene = print_in(*welcome);
     }
   }
   if (const std::string trouble = reader.trouble(); !trouble.empty())
     log::warning("{}: {}", capture.string(), trouble);
-  const auto longest = std::ranges::max_element(sessions, [](const auto& a, const auto& b) {
-    return a.second.samples.size() < b.second.samples.size();
-  });
-  if (longest == sessions.end() || longest->second.samples.size() < 2)
+  std::vector<CapturedForces> all;
+  for (const auto& [number, session] : sessions) {
+    if (!session.samples.empty()) all.push_back(in_order(session));
+  }
+  std::ranges::stable_sort(all, std::greater(), [](const CapturedForces& f) { return f.samples.size(); });
+  if (all.empty() || all.front().samples.size() < 2)
     fail("{}: holds no force samples of Palpate, so there is nothing to play", capture.string());
-  CapturedForces forces = in_order(longest->second);
-  if (const double rate = forces.rate_hz(); !(rate > 0 && rate <= kFastest))
+  if (const double rate = all.front().rate_hz(); !(rate > 0 && rate <= kFastest))
     fail("{}: its force samples come at {:.3g} Hz by their times; at most {:g} Hz can be played",
          capture.string(), rate, kFastest);
-  return forces;
+  return all;
 }
 
 }  // namespace palpate::sim

@@ -15,6 +15,8 @@ namespace {
 constexpr double kNow = 1e-9;  // s: rounding of tick and step times
 
 constexpr std::uint16_t kFirstPort = 45131;  // of the clients
+// For documentation (RFC 5737), as the clients' address.
+const Endpoint kServer{.address = {192, 0, 2, 2}, .port = 45130};
 
 /// Captures of different motions or links are different sessions.
 std::uint64_t session_number(const Trajectory& motion, const VirtualLink& link) {
@@ -57,17 +59,19 @@ VirtualSession::VirtualSession(Simulation& simulation, std::span<const Trajector
       link_(link),
       capture_(capture),
       server_(link.rate_hz, radii_of(simulation)) {
+  server_.set_scene(link.scene);
   for (std::size_t i = 0; i < motions_.size(); ++i) add_client(i);
   stats_.snaps = SnapCounter(link.rate_hz);
   stats_.missed = MissedTools(simulation.tools());
 }
 
 void VirtualSession::add_client(std::size_t tool) {
-  clients_.push_back({.tool = tool,
-                      .endpoint = virtual_address(1, static_cast<std::uint16_t>(kFirstPort + tool)),
-                      .session = session_number(motions_[tool], link_) + 2 * tool,
-                      .talk = ClientSession(Nonce{1 + tool}),
-                      .pages = {.near = NearTiles(served_.pager(tool)->state().vertices)}});
+  clients_.push_back(
+      {.tool = tool,
+       .endpoint = {.address = {192, 0, 2, 1}, .port = static_cast<std::uint16_t>(kFirstPort + tool)},
+       .session = session_number(motions_[tool], link_) + 2 * tool,
+       .talk = ClientSession(Nonce{1 + tool}),
+       .pages = {.near = NearTiles(served_.pager(tool)->state().vertices)}});
 }
 
 Time VirtualSession::time_of(std::uint64_t k) const {
@@ -275,14 +279,13 @@ Datagram VirtualSession::travel(const Endpoint& from, const Endpoint& to, const 
 }
 
 void VirtualSession::to_server(Client& client, const Header& header, const Message& message, Time t) {
-  const auto outcome =
-      server_.receive(travel(client.endpoint, virtual_server(), header, message, t), client.endpoint, t,
-                      {client.session, nonce_of(link_.scene)}, server_stats_);
+  const auto outcome = server_.receive(travel(client.endpoint, kServer, header, message, t), client.endpoint,
+                                       t, {client.session}, server_stats_);
   if (outcome.answer) to_client(client, outcome.answer->first, outcome.answer->second, t);
 }
 
 void VirtualSession::to_client(Client& client, const Header& header, const Message& message, Time t) {
-  client.talk.receive(travel(virtual_server(), client.endpoint, header, message, t), t, client.stats);
+  client.talk.receive(travel(kServer, client.endpoint, header, message, t), t, client.stats);
 }
 
 }  // namespace palpate::sim

@@ -6,7 +6,6 @@
 #include "common/trajectory.h"
 #include "protocol/capture.h"
 #include "protocol/near_tiles.h"
-#include "protocol/scene_print.h"
 #include "protocol/session.h"
 #include "sim_server/serving/missed_tools.h"
 

@@ -103,7 +103,7 @@ inline std::vector<Message> one_of_each() {
   telemetry.by_law = {1, -2, 3, 0.5F};
   const Pointer pointer{.tool = 1, .number = 0x0102, .p_W = {0.5, -1, 2}, .buttons = 5};
   return {Hello{.nonce = {42}, .attempt = 5},
-          Welcome{{42}, 5, {43, 44}, 1, 30, 0.005},
+          Welcome{{42}, 5, {43, 44}, 1, 30, 0.005, {1, 2, 3, 0x01020304}},
           Refuse{{42}, 5, RefuseReason::kNoFreeTool},
           Bye{},
           tool,

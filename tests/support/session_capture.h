@@ -19,6 +19,9 @@ class CaptureOf {
               std::uint16_t port = 5000) {
     add(server(), client(port), {session, sequence}, sample);
   }
+  void welcome(const protocol::Welcome& welcome, std::uint64_t session, std::uint16_t port = 5000) {
+    add(server(), client(port), {session, 1}, welcome);
+  }
   void page(const protocol::SurfacePage& page, std::uint64_t sequence) {
     add(server(), client(5000), {7, sequence}, page);
   }

@@ -11,6 +11,8 @@ using Json = nlohmann::json;
 
 namespace {
 
+const std::string kOtherScene = source_dir() + "/configs/scenes/liver_tensor_mass.toml";
+
 /// A capture of the liver in virtual time.
 std::string record(const std::string& file, const std::vector<std::string>& more = {}) {
   std::vector<std::string> all{"record",    kScene, "--trajectory", kClient, "--rate", "33.3",
@@ -87,10 +89,21 @@ TEST_CASE(
   CHECK(report["tools"][0]["timeline"]["cells"].size() >= 5);
   const std::string live = bytes_of(file("live.csv"));
   CHECK(live.size() > 100000);
+  output_of("sim_server",
+            {"record", kOtherScene, "--trajectory", kClient, "--rate", "250", "--seconds", "1", "--plain",
+             "--out", file("truth.pcap")},
+            0);
   for (const char* name : {"client.pcap", "server.pcap"}) {
     replay(file(name), {"--client", kClient, "--out", file("again.csv")});
     const bool same = bytes_of(file("again.csv")) == live;
     CHECK(same);
+    // The Welcome tells of which scene the forces are.
+    const std::string refused = output_of(
+        "sim_server", {"view", file(name), "--scene", kOtherScene, "--viewer", "0", "--seconds", "1"}, 2);
+    CHECK(refused.find("was recorded of another scene, which differs by: ") != std::string::npos);
+    CHECK(output_of("haptic_client",
+                    {"evaluate", file(name), "--truth", file("truth.pcap"), "--out", file("out")}, 2)
+              .find("is of another scene than --truth") != std::string::npos);
   }
 }
 

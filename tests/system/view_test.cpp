@@ -8,6 +8,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/paths.h"
 #include "tests/support/programs.h"
+#include "tests/support/session_capture.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/web_page.h"
 
@@ -117,6 +118,31 @@ TEST_CASE("view: a capture with its scene is stepped again, to the same forces")
   CHECK(bare.page.surfaces == 0);
   CHECK(bare.page.sample_forces == played.page.sample_forces);
   CHECK(bare.texts.back()["state"]["tools"].size() == 1);
+}
+
+TEST_CASE("view: each tool has the radius of its own session, and no session may be of another scene") {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.pcap";
+  {
+    CaptureOf capture(file);
+    capture.welcome({.tool = 0, .tool_radius = 0.008, .scene = {.mesh = 1}}, 7, 5000);
+    capture.welcome({.tool = 1, .tool_radius = 0.003}, 8, 6000);
+    for (std::uint64_t n = 1; n <= 20; ++n) {
+      const auto t = static_cast<std::int64_t>(n) * 10'000'000;
+      if (n <= 10) capture.sample({.tool = 0, .number = n, .tool_t_ns = t}, n + 1, 7, 5000);
+      capture.sample({.tool = 1, .number = n, .tool_t_ns = t}, n + 1, 8, 6000);
+    }
+    capture.close();
+  }
+  const auto tools = nlohmann::json::parse(Viewed({file.string()}).scene)["tools"];
+  REQUIRE(tools.size() == 2);
+  CHECK(tools[0]["radius"] == 0.008);
+  CHECK(tools[1]["radius"] == 0.003);
+  const std::string scene = source_dir() + "/configs/scenes/wall.toml";
+  const std::string refused = output_of(
+      "sim_server", {"view", file.string(), "--scene", scene, "--viewer", "0", "--seconds", "1"}, 2);
+  CHECK(refused.find("was recorded of another scene, which differs by: mesh") != std::string::npos);
+  CHECK(refused.find("(its session of 0.1 s with tool 1)") != std::string::npos);
 }
 
 TEST_CASE("view: what is no capture of a session is told in one line") {

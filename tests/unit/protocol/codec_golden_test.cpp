@@ -21,13 +21,14 @@ TEST_CASE("golden bytes: written down by hand from protocol/README.md") {
                                                    "2a000000000000000000000000000000"
                                                    "0500000000000000"
                                                    "2d000000000000002e00000000000000");
-  CHECK(hex(encoded(kHeader, messages[1])) == front("03", "3900") +
+  CHECK(hex(encoded(kHeader, messages[1])) == front("03", "4900") +
                                                   "2a000000000000000000000000000000"
                                                   "0500000000000000"
                                                   "2b000000000000002c00000000000000"
                                                   "01"
                                                   "0000000000003e40"
-                                                  "7b14ae47e17a743f");
+                                                  "7b14ae47e17a743f"
+                                                  "01000000020000000300000004030201");
   CHECK(hex(encoded(kHeader, messages[2])) == front("04", "1900") +
                                                   "2a000000000000000000000000000000"
                                                   "0500000000000000"

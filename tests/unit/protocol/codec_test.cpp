@@ -174,6 +174,25 @@ TEST_CASE("a tag behind the payload, and fields a later version adds, do not dis
   CHECK(decode(longer, datagram) == Verdict::kAccepted);
 }
 
+TEST_CASE("a Welcome that ends before the print of its scene, as older servers say it, tells of none") {
+  const Welcome welcome{.nonce = {1}, .tool_radius = 0.005, .scene = {.mesh = 1, .tools = 2}};
+  const Bytes whole = encoded(kHeader, welcome);
+  Datagram datagram;
+  REQUIRE(decode(whole, datagram) == Verdict::kAccepted);
+  CHECK(std::get<Welcome>(datagram.message).scene == welcome.scene);
+  for (std::size_t payload = 50; payload < 73; ++payload) {
+    CAPTURE(payload);
+    Bytes shorter = whole;
+    shorter.resize(kHeaderBytes + payload);
+    shorter[6] = static_cast<std::byte>(payload);
+    datagram.message = Bye{};
+    REQUIRE(decode(shorter, datagram) == (payload == 57 ? Verdict::kAccepted : Verdict::kLength));
+    if (payload != 57) continue;
+    CHECK(std::get<Welcome>(datagram.message).tool_radius == 0.005);
+    CHECK(std::get<Welcome>(datagram.message).scene == ScenePrint{});
+  }
+}
+
 TEST_CASE("a Hello without its padding is refused: it could be answered with more bytes than it has") {
   Bytes bytes = encoded({}, Hello{.nonce = {1}});
   bytes.resize(kHeaderBytes + 40);

@@ -74,6 +74,20 @@ TEST_CASE("Hello, Welcome, tool states and forces") {
   CHECK(pair.client_stats.lost == 0);
 }
 
+TEST_CASE("each Welcome of a server tells of which scene it is, once the server knows it") {
+  const ScenePrint scene{.mesh = 1, .material = 2, .supports = 3, .tools = 4};
+  ServerSessions server(30, {0.005, 0.005});
+  LinkStats stats;
+  const auto welcome_of = [&](std::uint64_t nonce) {
+    const auto outcome = greet_as(nonce, server, kClient, 10s, nonce, stats);
+    REQUIRE(outcome.answer);
+    return std::get<Welcome>(outcome.answer->second);
+  };
+  CHECK(welcome_of(1).scene == ScenePrint{});
+  server.set_scene(scene);
+  for (const std::uint64_t nonce : {1, 2}) CHECK(welcome_of(nonce).scene == scene);
+}
+
 TEST_CASE("the client asks every 250 ms until welcomed, and again after 300 ms of silence") {
   Pair pair;
   CHECK(pair.client.poll(pair.now));

@@ -270,6 +270,32 @@ TEST_CASE("two clients in one capture are two sessions, a restarted server is th
   CHECK(all_ticks(file, 2).size() == 20);
 }
 
+TEST_CASE("each session of a capture is of the scene of its own Welcome, and the first one counts") {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.pcap";
+  const protocol::ScenePrint one{.mesh = 1}, other{.mesh = 2};
+  {
+    CaptureOf capture(file);
+    capture.welcome({.tool_radius = 0.005, .scene = one}, 7);
+    capture.welcome({.tool_radius = 0.005, .scene = other}, 8, 6000);
+    capture.welcome({.tool_radius = 0.005}, 9, 7000);  // of a server that does not say
+    for (std::uint64_t tick = 1; tick <= 20; ++tick) {
+      capture.state(state_at(tick, 0), tick, 7, 5000);
+      capture.state(state_at(tick, 0), tick, 8, 6000);
+      capture.state(state_at(tick, 0), tick, 9, 7000);
+      capture.state(state_at(tick, 0), tick, 10, 8000);
+    }
+    capture.welcome({.tool_radius = 0.005, .scene = other}, 7);
+    capture.close();
+  }
+  const CaptureSurvey found = survey(file, kQuiet);
+  REQUIRE(found.runs.size() == 4);
+  CHECK(found.runs[0].links[0].scene == one);
+  CHECK(found.runs[1].links[0].scene == other);
+  CHECK_FALSE(found.runs[2].links[0].scene);
+  CHECK_FALSE(found.runs[3].links[0].scene);
+}
+
 TEST_CASE("a session whose client changes its address, and then its session, stays one run") {
   const TemporaryFolder folder;
   const auto file = folder.path() / "a.pcap";
