@@ -314,6 +314,12 @@ int evaluate(const EvaluateOptions& options) {
   std::optional<Truth> truth;
   if (options.truth)
     truth.emplace(*options.truth, [&](double fraction) { progress("reading the truth", fraction); });
+  if (truth && truth->flagged() > 0)
+    log::warning(
+        "{}: {} of its {} force samples are flagged, as its server found no settled answer; ticks beside "
+        "them "
+        "are not scored",
+        options.truth->string(), truth->flagged(), truth->samples());
   Json rows = Json::array();
   for (const std::filesystem::path& capture : options.captures) {
     const Evaluation e = run(capture, laws, options, truth ? &*truth : nullptr, progress);

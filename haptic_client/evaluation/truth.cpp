@@ -21,7 +21,9 @@ Truth::Truth(const std::filesystem::path& file, const std::function<void(double 
   for (CapturedTick tick; session.next(tick);) {
     if (!tick.arrived) continue;
     const Time t{tick.arrived->tool_t_ns};
-    if (points_.empty() || t > points_.back().t) points_.push_back({t, tick.arrived->p_W, tick.arrived->f_W});
+    const bool flagged = (tick.arrived->flags & protocol::ForceSample::kFlagged) != 0;
+    if (points_.empty() || t > points_.back().t)
+      points_.push_back({t, tick.arrived->p_W, tick.arrived->f_W, flagged});
   }
   const double seconds = points_.size() < 2 ? 0 : to_seconds(points_.back().t - points_.front().t);
   rate_hz_ = seconds > 0 ? static_cast<double>(points_.size() - 1) / seconds : 0;
@@ -31,11 +33,23 @@ Truth::Truth(const std::filesystem::path& file, const std::function<void(double 
         "... --rate 2000 --plain`",
         file.string(), rate_hz_, kSlowest);
   }
+  if (2 * flagged() > samples()) {
+    fail(
+        "{}: {} of its {} force samples are flagged: its server found no settled answer, so that they are no "
+        "truth; record it at a higher --rate, or along a motion that the tissue can follow",
+        file.string(), flagged(), samples());
+  }
+}
+
+std::size_t Truth::flagged() const noexcept {
+  return static_cast<std::size_t>(std::ranges::count_if(points_, &Point::flagged));
 }
 
 std::optional<ForceJumps> Truth::snaps() const {
   SnapCounter counter(rate_hz_);
-  for (const Point& point : points_) counter.add(point.f, point.t);
+  for (const Point& point : points_) {
+    if (!point.flagged) counter.add(point.f, point.t);
+  }
   return counter.snaps();
 }
 
@@ -49,7 +63,7 @@ std::optional<double> Truth::find(Time t) const noexcept {
 
 std::optional<Vec3> Truth::at(Time t) const noexcept {
   const auto fraction = find(t);
-  if (!fraction) return {};
+  if (!fraction || points_[hint_].flagged || points_[hint_ + 1].flagged) return {};
   return points_[hint_].f + *fraction * (points_[hint_ + 1].f - points_[hint_].f);
 }
 

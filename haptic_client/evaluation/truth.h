@@ -12,14 +12,15 @@
 namespace palpate::client {
 
 /// The force that would have been right at any time: the samples of a capture that was made at a high rate on
-/// the same motion (`sim_server record --rate 2000 --plain`). 80 bytes a sample.
+/// the same motion (`sim_server record --rate 2000 --plain`). 64 bytes a sample.
 class Truth {
  public:
-  /// Reads the longest session. Throws `Error` when the capture cannot be read or has less than 200 samples a
-  /// second.
+  /// Reads the longest session. Throws `Error` when the capture cannot be read, has less than 200 samples a
+  /// second, or more flagged samples than others.
   Truth(const std::filesystem::path& file, const std::function<void(double fraction)>& progress);
 
-  /// Force (N, world) at `t` (client clock), on the line between the samples around it; none outside them.
+  /// Force (N, world) at `t` (client clock), on the line between the samples around it; none outside them,
+  /// or where one of them is flagged: its force was held, not computed.
   /// Times that grow are found at once.
   std::optional<Vec3> at(Time t) const noexcept;
   /// Returns how far from `p` (m, world) the tool of the truth was at `t`; none outside its samples.
@@ -36,6 +37,7 @@ class Truth {
   struct Point {
     Time t;
     Vec3 p, f;
+    bool flagged;
   };
   std::optional<double> find(Time t) const noexcept;
   std::vector<Point> points_;
