@@ -71,6 +71,8 @@ class ReplayWindow {
     ++stats.received;
     return true;
   }
+  /// Returns the highest number taken; 0: none yet.
+  std::uint64_t highest() const noexcept { return highest_; }
   /// True if the last number taken is the highest.
   bool in_order() const noexcept { return in_order_; }
   /// The sender, as it says itself, is at `sequence` only: the next number is that or higher, and all below

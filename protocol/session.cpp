@@ -184,20 +184,32 @@ ServerSessions::Outcome ServerSessions::greet(const Datagram& datagram, const He
   ++stats.received;
   Outcome outcome = cookies_.valid(hello.cookie, hello.nonce, from, now)
                         ? admit(hello, *shared, from, now, fresh)
-                        : Outcome{.answer = {{Header{}, Challenge{hello.nonce, hello.attempt,
-                                                                  cookies_.make(hello.nonce, from, now)}}}};
+                        : challenge(hello, from, now);
   outcome.key = direction_key(*shared, Direction::kToClient, hello.nonce, {});
   // It takes no answer without a tag.
   if (!*shared && is_tagged(datagram.bytes)) outcome.mismatch = KeyMismatch::kNotExpected;
   return outcome;
 }
 
-/// A known client hears its Welcome again, and is not kept by that: only tool states keep a tool.
+ServerSessions::Outcome ServerSessions::challenge(const Hello& hello, const Endpoint& from,
+                                                  Time now) const noexcept {
+  return {
+      .answer = {{Header{}, Challenge{hello.nonce, hello.attempt, cookies_.make(hello.nonce, from, now)}}}};
+}
+
+/// A known client hears its Welcome again, and is not kept by that: only tool states keep a tool. Where none
+/// is taken any more, numbers that are not its own shut them out: the session ends, and a new one begins.
 ServerSessions::Outcome ServerSessions::admit(const Hello& hello, const Key& shared, const Endpoint& from,
                                               Time now, const Fresh& fresh) {
   auto member = std::ranges::find_if(members_, [&](const Member& m) {
     return m.nonce == hello.nonce && m.key == shared.number && (m.endpoint == from || !keys_.empty());
   });
+  if (member != members_.end() && member->window.highest() > 0 && now - member->last_heard >= kUnheard) {
+    depart(member);
+    Outcome outcome = challenge(hello, from, now);
+    outcome.departed = &departed_;
+    return outcome;
+  }
   if (member == members_.end()) {
     const auto tool = free_tool();
     if (!tool) return {.answer = {{Header{}, Refuse{hello.nonce, hello.attempt, RefuseReason::kNoFreeTool}}}};
@@ -260,9 +272,7 @@ ServerSessions::Outcome ServerSessions::receive(const Datagram& datagram, const 
   if (!checked(datagram, found->keys.in, stats)) return {};
   if (std::holds_alternative<Bye>(datagram.message)) {
     if (!found->window.accept(datagram.header.sequence, stats)) return {};
-    departed_ = *found;
-    members_.erase(found);
-    spend_cookies();
+    depart(found);
     return {.departed = &departed_};
   }
   const auto* tool_state = std::get_if<ToolState>(&datagram.message);
@@ -289,6 +299,12 @@ ServerSessions::Outcome ServerSessions::receive(const Datagram& datagram, const 
   if (newer || again) found->last_heard = now;
   if (!newer) return {.asking = tool_state};  // the newest value wins
   return {.tool_state = tool_state, .asking = tool_state};
+}
+
+void ServerSessions::depart(std::vector<Member>::iterator member) noexcept {
+  departed_ = *member;
+  members_.erase(member);
+  spend_cookies();
 }
 
 /// With keys: a Hello of a session that is over, sent again by who captured it, takes no tool. Who is about

@@ -59,7 +59,7 @@ class LinkedPair {
     arrived_.reset();
     pages_.clear();
     device_.write(result.f_D);
-    greet();
+    if (ticks_ % kTimer == kTimer / 2) greet();
     if (client_.welcomed()) {
       protocol::ToolState state = result.tool;
       state.tool = client_.welcome().tool;
@@ -81,6 +81,32 @@ class LinkedPair {
     newest_.reset();
   }
 
+  /// Delivers a datagram in the name of the server, as one who knows the session and its keys can make it.
+  void forge_to_client(const protocol::Header& header, const protocol::Message& message) {
+    const protocol::ServerSessions::Member* const member = server_.holder(0);
+    if (member == nullptr) return;
+    const bool greets = std::holds_alternative<protocol::Welcome>(message);
+    const protocol::Key of_hello =
+        protocol::direction_key(settings_.key, protocol::Direction::kToClient, hello_.nonce, {});
+    std::array<std::byte, protocol::kMaxDatagram> out;
+    const std::size_t size = protocol::encode(header, message, out);
+    take_at_client({out.data(), protocol::seal(out, size, greets ? of_hello : member->keys.out)});
+  }
+  /// The same, in the name of the client.
+  void forge_to_server(const protocol::Header& header, const protocol::Message& message) {
+    const protocol::ServerSessions::Member* const member = server_.holder(0);
+    if (member == nullptr) return;
+    std::array<std::byte, protocol::kMaxDatagram> out;
+    const std::size_t size = protocol::encode(header, message, out);
+    receive_at_server({out.data(), protocol::seal(out, size, member->keys.in)});
+  }
+  /// Returns session and sequence of the newest datagram of the server; 0: nobody holds the tool.
+  protocol::Header newest_of_server() {
+    const protocol::ServerSessions::Member* const member = server_.holder(0);
+    return member == nullptr ? protocol::Header{} : protocol::Header{member->session, member->sent};
+  }
+  const protocol::Hello& newest_hello() const { return hello_; }
+
   double seconds() const { return static_cast<double>(ticks_) / settings_.haptic_hz; }
   const protocol::ClientSession& client() const { return client_; }
   const protocol::LinkStats& client_stats() const { return client_stats_; }
@@ -90,7 +116,7 @@ class LinkedPair {
   std::optional<double> first_welcome() const { return first_welcome_; }
 
  private:
-  static constexpr std::uint64_t kTimer = 50;  // ticks between two looks at silent sessions
+  static constexpr std::uint64_t kTimer = 50;  // ticks between two looks at silent sessions, of either end
 
   Time link_time() const { return from_seconds(1 + seconds()); }
   Time client_time() const { return from_seconds(client_clock_ + seconds()); }
@@ -111,21 +137,24 @@ class LinkedPair {
   }
 
   void receive_at_client() {
-    const auto take = [&](std::span<const std::byte> bytes) {
-      protocol::Datagram datagram;
-      if (protocol::decode(bytes, datagram) != protocol::Verdict::kAccepted) return;
-      const protocol::Message* message = client_.receive(datagram, client_time(), client_stats_);
-      if (message != nullptr) {
-        if (const auto* sample = std::get_if<protocol::ForceSample>(message)) arrived_ = *sample;
-        if (const auto* page = std::get_if<protocol::SurfacePage>(message)) pages_.push_back(*page);
-      }
-      greet();
-    };
-    while (const auto bytes = down_.receive(link_time())) take(*bytes);
-    while (const auto bytes = good_down_.receive(link_time())) take(*bytes);
+    while (const auto bytes = down_.receive(link_time())) take_at_client(*bytes);
+    while (const auto bytes = good_down_.receive(link_time())) take_at_client(*bytes);
+  }
+  void take_at_client(std::span<const std::byte> bytes) {
+    protocol::Datagram datagram;
+    if (protocol::decode(bytes, datagram) != protocol::Verdict::kAccepted) return;
+    const protocol::Message* message = client_.receive(datagram, client_time(), client_stats_);
+    if (message != nullptr) {
+      if (const auto* sample = std::get_if<protocol::ForceSample>(message)) arrived_ = *sample;
+      if (const auto* page = std::get_if<protocol::SurfacePage>(message)) pages_.push_back(*page);
+    }
+    greet();
   }
   void greet() {
-    if (const auto hello = client_.poll(client_time())) say(*hello);
+    const auto hello = client_.poll(client_time());
+    if (!hello) return;
+    hello_ = *hello;
+    say(*hello);
   }
   void say(const protocol::Message& message) {
     std::array<std::byte, protocol::kMaxDatagram> bytes;
@@ -190,6 +219,7 @@ class LinkedPair {
   std::mt19937_64 random_;
   protocol::LinkSimulator up_, down_, good_up_, good_down_;
   protocol::ClientSession client_;
+  protocol::Hello hello_{};  // the newest
   protocol::ServerSessions server_;
   protocol::TokenBucket page_bucket_{2000, 32};
   protocol::LinkStats client_stats_, server_stats_;

@@ -112,6 +112,35 @@ TEST_CASE("a lost Welcome: the same client asking again gets the same session") 
   CHECK(pair.server.holder(0)->session == 77);
 }
 
+TEST_CASE(
+    "a client whose states are shut out by wild numbers gets another session by its Hello after 400 ms") {
+  Pair pair;
+  pair.shake_hands();
+  REQUIRE(pair.send_tool(1).tool_state != nullptr);
+  // Four in a row begin anew there, and the client is far behind.
+  for (std::uint64_t i = 0; i < 4; ++i)
+    pair.server.receive({{77, (std::uint64_t{1} << 62) + i}, ToolState{.tick = 100 + i}}, kClient, pair.now,
+                        {}, pair.server_stats);
+  REQUIRE(pair.send_tool(2).tool_state == nullptr);
+  pair.now += 399ms;
+  pair.shake_hands(78);
+  CHECK(pair.server.holder(0)->session == 77);
+  REQUIRE(pair.send_tool(3).tool_state == nullptr);
+  pair.now += 1ms;
+  const Hello hello{{42}, {}, 9};
+  const auto challenge = pair.server.receive({{}, hello}, kClient, pair.now, {79}, pair.server_stats);
+  const Hello again{{42}, std::get<Challenge>(challenge.answer->second).cookie, 10};
+  const auto outcome = pair.server.receive({{}, again}, kClient, pair.now, {79}, pair.server_stats);
+  REQUIRE(outcome.departed != nullptr);
+  CHECK(outcome.departed->session == 77);
+  CHECK(std::holds_alternative<Challenge>(outcome.answer->second));
+  CHECK(pair.server.members().empty());
+  pair.now += 300ms;
+  pair.shake_hands(80);
+  CHECK(pair.server.holder(0)->session == 80);
+  CHECK(pair.send_tool(4).tool_state != nullptr);
+}
+
 TEST_CASE("a second client is refused with the reason, and let in when the first is gone for 800 ms") {
   Pair pair;
   pair.shake_hands();

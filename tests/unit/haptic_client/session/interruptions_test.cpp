@@ -1,4 +1,6 @@
 // A whole session in virtual time, interrupted: what a hand on a spring wall feels meanwhile and afterwards.
+#include <random>
+
 #include "common/text.h"
 #include "haptic_client/device/simulated_operator.h"
 #include "haptic_client/extrapolation/extrapolators.h"
@@ -25,18 +27,23 @@ struct Pressing {
                  {.max_force = kMostNewton, .max_slew = kMostSlew}, {}, 0.01),
         pair(hand, pipeline, served(), settings) {}
 
-  static test::Served served() {
+  test::Served served() {
     auto organ = std::make_shared<test::Server>(test::served(test::wall(kWall)));
-    return {.step = [organ, last = std::uint64_t{0}](std::uint64_t session,
-                                                     const protocol::ToolState& state) mutable {
+    return {.step = [this, organ, last = std::uint64_t{0}](std::uint64_t session,
+                                                           const protocol::ToolState& state) mutable {
       if (std::exchange(last, session) != session) *organ = test::served(test::wall(kWall));
-      return organ->step(state);
+      const auto sample = organ->step(state);
+      if (sample) answer = *sample;
+      return sample;
     }};
   }
   /// Newtons after `seconds` more; nothing ever left the limits.
   double after(double seconds) {
     for (const double end = pair.seconds() + seconds; pair.seconds() < end - 1e-9;) {
-      const double newton = pair.tick().f_D.norm();
+      const TickResult result = pair.tick();
+      const double newton = result.f_D.norm();
+      if (result.gain < 1 && result.gain <= gain) newest_away = pair.seconds();
+      gain = result.gain;
       most = std::max(most, newton);
       steepest = std::max(steepest, 1000 * std::abs(newton - before));
       before = newton;
@@ -48,8 +55,84 @@ struct Pressing {
 
   SimulatedOperator hand;
   Pipeline pipeline;
+  protocol::ForceSample answer;  // the newest
   test::LinkedPair pair;
   double before = 0, most = 0, steepest = 0;
+  double gain = 0, newest_away = 0;  // [0, 1]; s, when the force last faded or was gone
+};
+
+/// Says anything in the name of either end, as whoever knows the session can without a key, or a faulty peer
+/// with one: up to 40 datagrams within a second, with wild numbers and with such that are a little ahead.
+class AnyDatagrams {
+ public:
+  explicit AnyDatagrams(std::uint64_t seed) : random_(seed) {}
+
+  void say(Pressing& pressing) {
+    row_ = number(100);
+    const std::uint64_t datagrams = 1 + below(40);
+    for (at_ = 0; at_ < datagrams; ++at_) {
+      say_one(pressing);
+      if (below(4) == 0) pressing.after(1e-3 * static_cast<double>(below(100)));
+    }
+  }
+
+ private:
+  std::uint64_t below(std::uint64_t n) { return random_() % n; }
+  std::uint64_t number(std::uint64_t near) {
+    switch (below(4)) {
+      case 0:
+        return near + 1 + below(100);
+      case 1:
+        return near - std::min(near, below(200));
+      case 2:
+        return (std::uint64_t{1} << 63) + below(8);
+      default:
+        return random_();
+    }
+  }
+  void say_one(Pressing& pressing) {
+    test::LinkedPair& pair = pressing.pair;
+    const protocol::Header newest = pair.newest_of_server();
+    const auto ticks = static_cast<std::uint64_t>(1000 * pair.seconds());
+    const bool in_a_row = below(2) == 0;
+    const std::uint64_t up = in_a_row ? row_ + at_ : number(ticks),
+                        down = in_a_row ? row_ + at_ : number(newest.sequence);
+    const protocol::Header to_server{newest.session, up}, to_client{newest.session, down};
+    const std::int64_t t =
+        pressing.answer.tool_t_ns + static_cast<std::int64_t>(below(200'000'000)) - 100'000'000;
+    switch (below(10)) {
+      case 0:
+        return pair.forge_to_server(to_server, protocol::Bye{});
+      case 1:
+        return pair.forge_to_client(to_client, protocol::Bye{});
+      case 2:
+        return pair.forge_to_client(to_client,
+                                    protocol::Refuse{{}, 0, protocol::RefuseReason::kUnknownSession});
+      case 3:
+      case 4: {
+        const protocol::Hello& hello = pair.newest_hello();
+        const std::uint64_t session = below(2) == 0 ? newest.session : 9;
+        return pair.forge_to_client(
+            {session, down},
+            protocol::Welcome{
+                .nonce = hello.nonce, .attempt = hello.attempt, .rate_hz = 30, .tool_radius = 0.005});
+      }
+      case 5:
+      case 6:
+        return pair.forge_to_server(to_server, protocol::ToolState{.tick = up, .t_ns = t});
+      case 7:
+        return pair.forge_to_server(to_server, protocol::Telemetry{.t_ns = t});
+      default: {
+        protocol::ForceSample sample = pressing.answer;
+        sample.number = below(2) == 0 ? down : sample.number + 1 + below(100);
+        sample.tool_t_ns = t;
+        return pair.forge_to_client(to_client, sample);
+      }
+    }
+  }
+
+  std::mt19937_64 random_;
+  std::uint64_t row_ = 0, at_ = 0;
 };
 
 protocol::LinkConditions delayed() {
@@ -104,4 +187,20 @@ TEST_CASE("a tenth lost, a tenth overtaken and late, in bursts: once that is ove
   Pressing pressing({.up = link, .down = link, .seed = static_cast<std::uint64_t>(seed), .faults_end = 6});
   CHECK(pressing.after(6) <= kMostNewton);
   CHECK_THAT(pressing.after(2.1), WithinRel(kRest, 0.01));
+}
+
+TEST_CASE(
+    "any set of datagrams keeps the force away for 1.1 s after its end at most, and it rises over 1 s") {
+  const auto key = GENERATE(protocol::Key{}, protocol::Key{.number = 1, .bytes = {7}});
+  AnyDatagrams any(83);
+  Pressing pressing({.up = delayed(), .down = delayed(), .key = key});
+  CHECK_THAT(pressing.after(4), WithinRel(kRest, 0.01));
+  for (int set = 0; set < 300; ++set) {
+    CAPTURE(set);
+    any.say(pressing);
+    const double end = pressing.pair.seconds();
+    const double newton = pressing.after(1.1 + Watchdog::kSoftStart + 0.01);
+    REQUIRE(pressing.newest_away <= end + 1.1);
+    REQUIRE_THAT(newton, WithinRel(kRest, 0.01));
+  }
 }
