@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t kRecording = 20;  // rows: fewer are corners of a path that somebody wrote
 constexpr double kUsualGaps = 10;       // times the median interval: the longest accepted
-constexpr double kUsualSteps = 10;      // times the usual step: farther from both neighbours is no motion
+constexpr double kUsualSteps = 10;      // times the usual step: there and back is no motion
+constexpr double kLongestAway = 0.5;    // s: a tool that leaps and stays for longer is believed
 constexpr double kFastest = 10;         // m/s: a hand that throws
 constexpr double kSlowRows = 0.5, kLongMotion = 3600;  // s: of rows, and of a motion, in another unit
 constexpr double kUnitError = 0.05;                    // of the length of a quaternion: rounding is less
@@ -61,7 +62,11 @@ class MotionReader {
   void read_buttons();
   void refuse_wrong_unit_of_time() const;
   void refuse_gaps() const;
-  void refuse_jumps() const;
+  std::optional<double> usual_step() const;
+  std::optional<std::size_t> row_of_return(std::size_t first, double usual) const;
+  bool is_lone_leap(std::size_t i, double usual) const;
+  void refuse_rows(std::size_t first, std::size_t back, double usual) const;
+  void judge_leaps();
   void refuse_speeds() const;
   void note_irregular_rows();
   std::string summary() const;
@@ -72,6 +77,7 @@ class MotionReader {
   double interval(std::size_t i) const { return rows_.t[i] - rows_.t[i - 1]; }
   /// Length of the step to row `i`, m, world.
   double step(std::size_t i) const { return settings_.frame.scale * (rows_.p[i] - rows_.p[i - 1]).norm(); }
+  double step_or_none(std::size_t i) const { return i > 0 && i < rows() ? step(i) : 0; }
   double longest_accepted() const { return settings_.gap.value_or(kUsualGaps * usual_interval_); }
 
   const TrajectorySettings& settings_;
@@ -206,26 +212,72 @@ void MotionReader::refuse_gaps() const {
       found == 1 ? "" : fmt::format(", the longest of {}", found), usual_interval_, 1.1 * gap);
 }
 
-/// Refuses a row to which the motion leaps, and from which it leaps back.
-void MotionReader::refuse_jumps() const {
-  if (!is_recording()) return;
+/// Returns a step that 95 % of those that move do not exceed, m; none where nothing moves.
+std::optional<double> MotionReader::usual_step() const {
   std::vector<double> steps;
   for (std::size_t i = 1; i < rows(); ++i) {
     if (step(i) > 0) steps.push_back(step(i));
   }
-  if (steps.empty()) return;
+  if (steps.empty()) return {};
   const auto usual =
       steps.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(steps.size() - 1));
   std::ranges::nth_element(steps, usual);
-  for (std::size_t i = 1; i + 1 < rows(); ++i) {
-    const double across = settings_.frame.scale * (rows_.p[i + 1] - rows_.p[i - 1]).norm();
-    const double apart = std::min(step(i), step(i + 1));
-    if (apart > kUsualSteps * std::max(across, *usual))
-      fail(
-          "{}: row {} lies {:.4g} mm from both its neighbours, where the usual step is {:.3g} mm; correct "
-          "it, or leave it out",
-          table_.where(i), i + 1, 1e3 * apart, 1e3 * std::max(across, *usual));
+  return *usual;
+}
+
+/// Returns the row that ends an excursion which begins at row `first`: with it the motion is back where usual
+/// steps, or a tenth of the leap, would have led. A leap leads there and a leap back, each of half the
+/// farthest distance at least, and twice as long as the steps around, as no fast motion of several rows has.
+/// None where the tool stays away.
+std::optional<std::size_t> MotionReader::row_of_return(std::size_t first, double usual) const {
+  double farthest = step(first);
+  for (std::size_t i = first + 1; i < rows(); ++i) {
+    if (i > first + 1 && rows_.t[i] - rows_.t[first - 1] > kLongestAway) return {};
+    const double across = settings_.frame.scale * (rows_.p[i] - rows_.p[first - 1]).norm();
+    const double leap = std::min(step(first), step(i));
+    const double way = std::max(leap / kUsualSteps, usual * static_cast<double>(i - first + 1));
+    const double around = std::max(step_or_none(first - 1), step_or_none(i + 1));
+    const bool is_back = across <= std::min(way, 0.5 * leap);
+    if (is_back && leap > std::max(kUsualSteps * usual, 2 * around) && 2 * leap > farthest) return i;
+    farthest = std::max(farthest, across);
   }
+  return {};
+}
+
+/// Returns whether the motion is slow before the step to row `i` and after it.
+bool MotionReader::is_lone_leap(std::size_t i, double usual) const {
+  return step(i) > kUsualSteps * std::max({step_or_none(i - 1), step_or_none(i + 1), usual});
+}
+
+void MotionReader::refuse_rows(std::size_t first, std::size_t back, double usual) const {
+  const bool is_one = back == first + 1;
+  fail(
+      "{}: {} {:.4g} mm from the rows before and after, where the usual step is {:.3g} mm; correct {}, or "
+      "leave {} out",
+      table_.where(first),
+      is_one ? fmt::format("row {} lies", first + 1) : fmt::format("rows {} to {} lie", first + 1, back),
+      1e3 * std::min(step(first), step(back)), 1e3 * usual, is_one ? "it" : "them", is_one ? "it" : "them");
+}
+
+/// Refuses rows to which the motion leaps, and from which it leaps back; notes leaps after which it stays.
+void MotionReader::judge_leaps() {
+  const auto usual = is_recording() ? usual_step() : std::nullopt;
+  if (!usual) return;
+  std::size_t worst = 0, leaps = 0;
+  for (std::size_t i = 1; i < rows(); ++i) {
+    if (step(i) <= kUsualSteps * *usual) continue;
+    if (const auto back = row_of_return(i, *usual)) refuse_rows(i, *back, *usual);
+    if (!is_lone_leap(i, *usual)) continue;
+    ++leaps;
+    if (worst == 0 || step(i) > step(worst)) worst = i;
+  }
+  if (leaps == 0) return;
+  rows_.warnings.push_back(
+      fmt::format("{}: row {} lies {:.4g} mm from the row before{}, where the usual step is {:.3g} mm, and "
+                  "the tool stays "
+                  "there; correct the rows if it did not",
+                  table_.where(worst), worst + 1, 1e3 * step(worst),
+                  leaps == 1 ? "" : fmt::format(", the farthest of {} such rows", leaps), 1e3 * *usual));
 }
 
 void MotionReader::refuse_speeds() const {
@@ -289,7 +341,7 @@ MotionRows MotionReader::read() {
   read_buttons();
   refuse_wrong_unit_of_time();
   refuse_gaps();
-  refuse_jumps();
+  judge_leaps();
   refuse_speeds();
   note_irregular_rows();
   rows_.summary = summary();

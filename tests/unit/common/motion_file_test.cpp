@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <fmt/core.h>
+#include <functional>
 #include <numbers>
 
 #include "common/error.h"
@@ -27,10 +28,14 @@ struct Recorded {
     return {0.001, 0.012 - 0.010 * sine * sine, 0.002};
   }
   std::string text(int wrong_row = -1, const Vec3& off = Vec3::Zero(), int every = 1) const {
+    return text_with([&](int i) { return i == wrong_row ? off : Vec3::Zero().eval(); }, every);
+  }
+  /// With each row off by what `off` says, m.
+  std::string text_with(const std::function<Vec3(int row)>& off, int every = 1) const {
     std::string rows = head;
     for (int i = 0; i <= 1000; i += every) {
       if (i >= hole_from && i < hole_to) continue;
-      const Vec3 p = (place(i) + (i == wrong_row ? off : Vec3::Zero())) / length;
+      const Vec3 p = (place(i) + off(i)) / length;
       rows += fmt::format("{},{},{},{}\n", i / 1000.0 / time, p[0], p[1], p[2]);
     }
     return rows;
@@ -100,12 +105,46 @@ TEST_CASE("a hole in a recording is refused with its place and length, or accept
 
 TEST_CASE("a row away from both its neighbours is refused by its number, a fast motion is not") {
   CHECK_THROWS_WITH(read_text(Recorded{}.text(500, {1, 0, 0})),
-                    Contains("motion.csv:502: row 501 lies 1000 mm from both its neighbours"));
+                    Contains("motion.csv:502: row 501 lies 1000 mm from the rows before and after"));
   // At 50 Hz 10 mm is no speed, but twenty times the largest step of 0.63 mm.
   CHECK_THROWS_WITH(read_text(Recorded{}.text(500, {0, 0, 0.01}, 20)), Contains("row 26 lies 10"));
   CHECK_NOTHROW(read_text(Recorded{}.text(500, {0, 0, 0.002}, 20)));
   CHECK_THROWS_WITH(read_text(Recorded{}.text(1000, {0, 0, 1})),
                     Contains("row 1001 lies 1 m from the row 0.001 s before: 1000 m/s"));
+}
+
+TEST_CASE("rows that leap away and back within half a second are refused by their numbers, others are not") {
+  // Every 5 ms a row of a press of 10 mm in 1 s: no step is longer than 0.16 mm.
+  const auto read_with = [](int first, int rows, const std::function<Vec3(int)>& off) {
+    return read_text(Recorded{}.text_with(
+        [&](int i) {
+          const int row = i / 5 + 1;
+          return row >= first && row < first + rows ? off(row - first) : Vec3::Zero().eval();
+        },
+        5));
+  };
+  const auto beside = [](int) { return Vec3(0, 0, 0.03); };
+  CHECK_THROWS_WITH(read_with(31, 1, beside),
+                    Contains("motion.csv:32: row 31 lies 30") && Contains("correct it"));
+  CHECK_THROWS_WITH(read_with(31, 2, beside),
+                    Contains("motion.csv:32: rows 31 to 32 lie ") && Contains("leave them out"));
+  CHECK_THROWS_WITH(read_with(31, 5, beside), Contains("rows 31 to 35 lie "));
+  CHECK_THROWS_WITH(read_with(31, 98, beside), Contains("rows 31 to 128 lie "));
+  // Each elsewhere.
+  CHECK_THROWS_WITH(read_with(31, 2, [](int k) { return Vec3(0, 0, k == 0 ? 0.03 : -0.03); }),
+                    Contains("rows 31 to 32 lie "));
+  CHECK_THROWS_WITH(read_with(31, 5, [](int k) { return Vec3(0.03 * std::cos(k), 0, 0.03 * std::sin(k)); }),
+                    Contains("rows 31 to 35 lie "));
+  // A tool that stays away is believed, and it is said.
+  const MotionRows away = read_with(31, 120, beside);
+  REQUIRE(away.warnings.size() == 1);
+  CHECK_THAT(away.warnings[0], Contains("motion.csv:152: row 151 lies 30") &&
+                                   Contains(", the farthest of 2 such rows") &&
+                                   Contains("and the tool stays there"));
+  REQUIRE(read_with(31, 1000, beside).warnings.size() == 1);
+  // A fast motion of several rows there and back is one.
+  const auto fast = [](int k) { return Vec3(0, 0, 0.02 * std::min(k + 1, 9 - k)); };
+  CHECK(read_with(31, 9, fast).warnings.empty());
 }
 
 TEST_CASE("millimetres read as metres are faster than a hand, and the remedies work") {
