@@ -155,7 +155,7 @@ int test_link(const ClientConfig& requested, const CommtestOptions& options) {
   const Json of_tool = tool.report();
   const TestedLink tested = tested_link(of_tool, seconds);
   const Verdict verdict = judge(tested);
-  std::vector<std::string> causes = remedies(tested);
+  std::vector<std::string> causes = verdict.remedies;
   std::ranges::copy(link_causes(tool.local()), std::back_inserter(causes));
   const Json report = {
       {"server", config.server},

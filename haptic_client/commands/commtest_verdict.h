@@ -35,17 +35,15 @@ struct Verdict {
   Grade grade = Grade::kPass;
   std::vector<std::string>
       reasons;  ///< sentences; the first says what law, age and stiffness the grade is of
+  /// What is to blame, and what helps; a sentence each, for each reason to give no better grade.
+  std::vector<std::string> remedies{};
 };
 
 /// FAIL: no session, ages or gaps at which the force fades (300 ms), a surface whose pages never come, or a
 /// stiffness above what the law keeps stable. WARN: within a factor of two of it, ages above 36 ms, which a
 /// hand notices in a spring (Rank et al.), gaps above 100 ms, a link that is too slow for all that a session
-/// sends, more than 5 % of datagrams lost either way, or
-/// fewer than 90 % of the samples aimed for.
+/// sends, more than 5 % of datagrams lost either way, or fewer than 90 % of the samples aimed for.
 Verdict judge(const TestedLink& link);
-
-/// Returns what of the link is to blame for the verdict, and what helps; a sentence each.
-std::vector<std::string> remedies(const TestedLink& link);
 
 const char* name_of(Grade grade);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/ages.h"
+
 namespace palpate::client {
 using protocol::ForceSample;
 
@@ -15,6 +17,7 @@ void LinkFigures::sample(const ForceSample& sample, Time now) noexcept {
   if (samples > 0) {
     longest_gap = std::max(longest_gap, now - newest_sample);
     gaps += now - newest_sample > kGap ? 1 : 0;
+    if (now - newest_sample > kOutage) unanswered = 0;  // of a link that was down nothing is known
   }
   newest_sample = now;
   surfaces += (sample.flags & ForceSample::kHasSurface) != 0 ? 1 : 0;
@@ -29,19 +32,22 @@ void LinkFigures::sample(const ForceSample& sample, Time now) noexcept {
   stiffest = std::max(stiffest, -n.dot(kn));
 }
 
-void LinkFigures::page(Time now) noexcept {
+void LinkFigures::page() noexcept {
   ++pages;
-  newest_page = now;
+  unanswered = 0;
 }
 
 void LinkFigures::requested_pages(Time now) noexcept {
-  if (page_requests++ == 0) first_request = now;
+  ++page_requests;
+  if (unanswered > 0 && now - newest_unanswered < kEvery) return;
+  if (unanswered++ == 0) first_unanswered = now;
+  newest_unanswered = now;
 }
 
 /// A link that is down altogether says nothing of the size of its datagrams: the newest sample is late, too.
 bool LinkFigures::drops_large() const noexcept {
   constexpr std::uint64_t kEnough = 12;  // requests: of 3 s at the fewest a second
-  return pages == 0 && page_requests >= kEnough && newest_sample - first_request > kPatience;
+  return unanswered >= kEnough && newest_sample - first_unanswered > kPatience;
 }
 
 std::string large_datagrams_text() {

@@ -79,7 +79,7 @@ void NetLink::pass_on(const protocol::Message& message, Time t) {
   }
   if (const auto* page = std::get_if<protocol::SurfacePage>(&message)) {
     mailboxes_.pages.push(*page);
-    figures_.page(t);
+    figures_.page();
   }
   if (const auto* pointer = std::get_if<protocol::Pointer>(&message)) {
     pointer_ = *pointer;

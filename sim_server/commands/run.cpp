@@ -176,6 +176,8 @@ void print_summary(const Json& report, const Simulation& simulation) {
       "            in contact {:.3f} ms (p50), {:.3f} (p99); {} deadlines late; largest force {:.2f} N\n",
       ms("contact_step_ms", "p50"), ms("contact_step_ms", "p99"), report["late"].get<long>(),
       report["max_newton"].get<double>());
+  if (const std::string rights = real_time_text(report); !rights.empty())
+    fmt::print("            {}\n", rights);
   if (const std::string why = simulation.flagged().to_text(); !why.empty())
     fmt::print("            steps with a flagged force: {}\n", why);
   if (const double added = simulation.traits().added_mass; added > 0)
@@ -291,9 +293,10 @@ std::jthread start_viewing(LiveView* view) {
 }
 
 /// Simulation, network, recording and page, each in a thread of its own, until `watching`, in this one, is
-/// over or throws. Returns what it returned.
+/// over or throws. Returns what it returned. Notes in `real_time` whether the simulation has the priority of
+/// its role.
 template <class Watching>
-auto serve_until(SimLoop& loop, NetLink& link, protocol::Recorder* recorder, LiveView* view,
+auto serve_until(SimLoop& loop, NetLink& link, protocol::Recorder* recorder, LiveView* view, bool& real_time,
                  const Watching& watching) {
   const std::jthread recording = start_recording(recorder);
   std::jthread net([&](const std::stop_token& stop) {
@@ -303,7 +306,9 @@ auto serve_until(SimLoop& loop, NetLink& link, protocol::Recorder* recorder, Liv
   const std::jthread viewing = start_viewing(view);
   std::jthread sim([&](const std::stop_token& stop) { loop.run(stop); });
   give_role(net.native_handle(), ThreadRole::kNetwork);  // refused as the next is, or not
-  warn_if_refused(give_role(sim.native_handle(), ThreadRole::kSimulation));
+  const std::string refused = give_role(sim.native_handle(), ThreadRole::kSimulation);
+  real_time = refused.empty();
+  warn_if_refused(refused);
   warn_if_refused(lock_memory());  // after the threads, whose stacks a small limit would not hold
   return watching();               // then each is asked to stop, the simulation first
 }
@@ -360,7 +365,8 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
     if (!view->facts().fields.empty()) view->feed().hooks.field = strain_energy_of(scene, simulation);
   }
   protocol::RecordingWatcher recording(recorder.get());
-  auto chosen = serve_until(loop, link, recorder.get(), view.get(), [&] {
+  bool real_time = false;
+  auto chosen = serve_until(loop, link, recorder.get(), view.get(), real_time, [&] {
     if (view) log::info("the live page: {}", view->link());
     log::info("\"{}\" ready after {:.2f} s, listening on {} (UDP); Ctrl-C ends it", scene.title,
               report["setup_ms"].get<double>() / 1e3, options.listen.address);
@@ -369,6 +375,7 @@ std::optional<Scene> serve_scene(ServerOptions& options, std::optional<ViewReque
   });
   recording.look();  // what was written at the end
   add_run(report, loop, link, simulation, scene, errors, now() - start);
+  report["real_time"] = real_time;
   if (recorder) report["recording"] = protocol::recording_report(*recorder);
   report_results(options, simulation, report);
   return chosen;

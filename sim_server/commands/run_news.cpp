@@ -1,6 +1,7 @@
 #include "sim_server/commands/run_news.h"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "common/log.h"
 
@@ -75,6 +76,13 @@ void RunEvents::report_end(const SimLoop& loop) {
   log::warning("{}: a tool cuts at tissue that cannot be cut; a larger region or `within` lets the cut go on",
                scene_.cutting->where);
   at_end_ = true;
+}
+
+std::string real_time_text(const Json& report) {
+  if (report["real_time"].get<bool>()) return "";
+  return "no real-time priority: other programs can hold up steps and make the force older, which the age "
+         "that "
+         "clients report includes; raise `ulimit -r` (rtprio in /etc/security/limits.conf)";
 }
 
 }  // namespace palpate::sim

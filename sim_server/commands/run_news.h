@@ -2,6 +2,7 @@
 #include <array>
 #include <vector>
 
+#include "common/report.h"
 #include "sim_server/cutting/resection.h"
 #include "sim_server/serving/net_link.h"
 #include "sim_server/serving/sim_loop.h"
@@ -29,5 +30,9 @@ class RunEvents {
   std::vector<bool> held_, beyond_;
   std::array<int, 3> unsaid_{};  // calls, of each kind of mismatch, until it is said again
 };
+
+/// Returns what a report of a run (REPORT.md) says of the priority of its threads: that other programs can
+/// make forces older where they had none. Empty where they had it.
+std::string real_time_text(const Json& report);
 
 }  // namespace palpate::sim

@@ -55,6 +55,10 @@ ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, c
   if (tool.grasps()) grip_.emplace(tool, rest, touchable, finder_.max_nodes());
   patch_.reserve(finder_.max_nodes(), finder_.max_triangles());
   filled_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
+  if (tool.grasp_place) {  // no contact gathers what it holds from the start
+    const ToolPose from(*tool.grasp_place);
+    finder_.gather(rest, rest, from.p_W, far_end(tool_, from), kGather * tool_.radius, patch_);
+  }
   displacement_.resize(3 * (finder_.max_nodes() + 1));
   predicted_.resize(3 * finder_.max_nodes());
   predictor_.changes.reserve(static_cast<std::size_t>(finder_.max_nodes()));
@@ -74,6 +78,11 @@ void ToolContact::change_surface(std::span<const Vec3> rest, const Surface& surf
                                  std::vector<Triangle> touchable,
                                  const std::function<bool(int)>& on_surface) {
   if (grip_) grip_->change_surface(touchable, on_surface);
+  const std::span<const int> nodes = finder_.vertices();
+  const auto is_gone = [&](const Triangle& t) {
+    return std::ranges::find(touchable, Triangle{nodes[t[0]], nodes[t[1]], nodes[t[2]]}) == touchable.end();
+  };
+  if (holds()) std::erase_if(patch_.triangles, is_gone);  // nothing gathers them again
   finder_.change_surface(rest, touchable.empty() ? touchable : surface.triangles, touchable);
   filled_.clear();
   predictor_.changes.clear();

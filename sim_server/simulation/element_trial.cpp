@@ -1,16 +1,24 @@
 #include "sim_server/simulation/element_trial.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "common/error.h"
+#include "sim_server/mesh/bounding_box.h"
 #include "sim_server/models/deformation_models.h"
+#include "sim_server/scene/touchable.h"
 #include "sim_server/simulation/step_times.h"
 
 namespace palpate::sim {
 namespace {
 
-constexpr int kMostNodes = 6000;  // of quadratic elements: their factor takes about a second
-constexpr double kStep = 1;       // s: tissue at rest takes any
+constexpr int kMostNodes = 6000;    // of quadratic elements: their factor takes about a second
+constexpr std::size_t kPlaces = 4;  // each adds a reach to the compliance of quadratic elements
+constexpr double kSpread = 0.25;    // of the diagonal of the reach: how far from each other the places are
+constexpr double kAcross = 0.5;     // cosine between normals of places that may be nearer
+constexpr double kAround = 1.1;     // radii around the tool: it presses straight down
+constexpr double kSmooth = 0.75;    // cosine between the normals of a vertex and of each of its faces
+constexpr double kStep = 1;         // s: tissue at rest takes any
 
 /// The same tissue at rest, of the linear law, under the first tool alone.
 Scene at_rest(Scene scene) {
@@ -27,32 +35,101 @@ Scene at_rest(Scene scene) {
   return scene;
 }
 
-/// The force on the tool at `site`; nothing where the contact has not settled.
-std::optional<Vec3> press(Simulation& simulation, const Press& site) {
-  const ToolForce force = simulation.step(ToolPose(site.place), kStep);
+/// Touchable surface vertices that do not lie on a sharp edge, where a press slips and twists; all of them
+/// where there are no others.
+std::vector<int> smooth_vertices(const Simulation& simulation, std::span<const Vec3> normals) {
+  std::vector<int> vertices = vertices_of({{simulation.touchable(0).begin(), simulation.touchable(0).end()}});
+  std::vector<char> sharp(normals.size(), 0);
+  for (const Triangle& t : simulation.surface().triangles) {
+    const auto at = [&](int k) -> const Vec3& { return simulation.rest()[static_cast<std::size_t>(t[k])]; };
+    const Vec3 normal = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
+    for (const int v : t) {
+      if (normal.dot(normals[v]) < kSmooth) sharp[v] = 1;
+    }
+  }
+  const auto is_smooth = [&](int v) { return sharp[v] == 0; };
+  if (std::ranges::any_of(vertices, is_smooth)) std::erase_if(vertices, std::not_fn(is_smooth));
+  return vertices;
+}
+
+/// From the vertex that yields most along its normal to the one that yields least.
+void sort_by_compliance(std::vector<int>& vertices, const Simulation& simulation,
+                        std::span<const Vec3> normals) {
+  std::vector<double> yields(normals.size());
+  ContactPatch patch;
+  patch.reserve(1, 1);
+  for (const int v : vertices) {
+    simulation.model().compliance(std::span(&v, 1), patch);
+    const Mat3 compliance = patch.compliance.block<3, 3>(0, 0);
+    yields[v] = normals[v].dot(compliance * normals[v]);
+  }
+  std::ranges::stable_sort(vertices, std::greater(), [&](int v) { return yields[v]; });
+}
+
+/// The middle of the reach, then the places that yield most, apart or across each other.
+std::vector<Press> places_to_press(const Scene& scene, Simulation& linear) {
+  std::vector<Press> places{find_press(scene, linear)};
+  const std::vector<Vec3> normals = normals_at_rest(linear);
+  std::vector<int> vertices = smooth_vertices(linear, normals);
+  sort_by_compliance(vertices, linear, normals);
+  const auto at = [&](int v) -> const Vec3& { return linear.rest()[static_cast<std::size_t>(v)]; };
+  std::vector<Vec3> reach;
+  for (const int v : vertices) reach.push_back(at(v));
+  const double apart = kSpread * diagonal_of(reach);
+  for (const int v : vertices) {
+    if (places.size() == kPlaces) break;
+    const Press place = press_on(at(v), normals[v], scene.tools[0].shape.radius);
+    const auto is_near = [&](const Press& other) {
+      return (other.place - place.place).norm() < apart && std::abs(other.normal.dot(place.normal)) > kAcross;
+    };
+    if (std::ranges::none_of(places, is_near)) places.push_back(place);
+  }
+  return places;
+}
+
+/// The force on a tool that comes to `site` from above it, the others lifted; nothing where the contact has
+/// not settled.
+std::optional<Vec3> press(Simulation& simulation, std::size_t tool, const Press& site, double radius) {
+  std::vector<ToolInput> inputs(simulation.tools());
+  inputs[tool].pose = ToolPose(site.place + 2 * radius * site.normal);
+  inputs[tool].enters = true;
+  simulation.step(inputs, kStep);
+  inputs[tool] = {.pose = ToolPose(site.place)};
+  const ToolForce force = simulation.step(inputs, kStep)[tool];
   if (force.flagged || force.contacts == 0) return {};
   return force.force;
 }
 
-std::optional<ElementTrial> press_both(Scene scene, const TetMesh& mesh) {
-  Simulation linear(scene, mesh);
-  const Press site = find_press(scene, linear);
-  const std::optional<Vec3> by_linear = press(linear, site);
-  if (!by_linear) return {};
-  const auto loads = linear.loads(0);
-  const Vec3 margin = Vec3::Constant(2 * scene.tools[0].shape.radius);
-  scene.tools[0].reach = Box{site.place - margin, site.place + margin};
+/// Quadratic elements in reach of these places alone, each of a tool of its own: their compliance is dear.
+Simulation quadratic_near(Scene scene, const TetMesh& mesh, std::span<const Press> places) {
+  const Vec3 margin = Vec3::Constant(kAround * scene.tools[0].shape.radius);
   scene.material->element = ElementKind::kQuadratic;
-  Simulation quadratic(scene, mesh);
-  const std::optional<Vec3> right = press(quadratic, site);
-  if (!right || right->isZero(0)) return {};
-  return ElementTrial{.percent = 100 * (*by_linear - *right).norm() / right->norm(),
-                      .loads = {loads.begin(), loads.end()}};
+  scene.tools.resize(places.size(), scene.tools[0]);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    scene.tools[i].reach = Box{places[i].place - margin, places[i].place + margin};
+  return Simulation(scene, mesh);
+}
+
+std::vector<ElementTrial> press_both(const Scene& scene, const TetMesh& mesh) {
+  const double radius = scene.tools[0].shape.radius;
+  Simulation linear(scene, mesh);
+  const std::vector<Press> places = places_to_press(scene, linear);
+  Simulation quadratic = quadratic_near(scene, mesh, places);
+  std::vector<ElementTrial> trials;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const std::optional<Vec3> by_linear = press(linear, 0, places[i], radius);
+    const std::optional<Vec3> right = press(quadratic, i, places[i], radius);
+    if (!by_linear || !right || right->isZero(0)) continue;
+    const auto loads = linear.loads(0);
+    trials.push_back({.percent = 100 * (*by_linear - *right).norm() / right->norm(),
+                      .loads = {loads.begin(), loads.end()}});
+  }
+  return trials;
 }
 
 }  // namespace
 
-std::optional<ElementTrial> try_elements(const Scene& scene, const TetMesh& mesh) {
+std::vector<ElementTrial> try_elements(const Scene& scene, const TetMesh& mesh) {
   if (scene.cutting || scene.tools.front().grasps() || scene.flies()) return {};
   const MeshInfo info = describe(mesh);
   if (info.vertices + info.edges > kMostNodes) return {};

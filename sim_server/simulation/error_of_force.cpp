@@ -18,45 +18,21 @@ DiscretisationErrors those_by_method(DiscretisationErrors errors, bool deforms, 
   return errors;
 }
 
-/// The surface vertex in the middle of what the first tool can touch, where a trial presses (`find_press`).
-int middle_of_reach(const Simulation& simulation) {
-  std::vector<int> vertices;
-  for (const Triangle& t : simulation.touchable(0)) vertices.insert(vertices.end(), t.begin(), t.end());
-  Vec3 middle = Vec3::Zero();
-  const auto rest = [&](int v) -> const Vec3& { return simulation.rest()[static_cast<std::size_t>(v)]; };
-  for (const int v : vertices) middle += rest(v) / static_cast<double>(vertices.size());
-  return *std::ranges::min_element(vertices, {}, [&](int v) { return (rest(v) - middle).squaredNorm(); });
-}
-
-/// Returns the error by elements of which the table says nothing, by a trial that pressed on such; nothing
-/// where there are none, or they were not tried.
-std::optional<double> tried_error(const Scene& scene, const Simulation& simulation,
-                                  const std::optional<ThinTissue>& thin) {
-  if (!thin || simulation.touchable(0).empty()) return {};
-  const bool locks = scene.material->locks();
-  if (!locks && !thin->is_thin_at(middle_of_reach(simulation))) return {};
-  const auto trial = try_elements(scene, simulation.mesh());
-  if (!trial || !(locks || thin->bears(trial->loads))) return {};
-  return trial->percent;
-}
-
 }  // namespace
 
 ErrorOfForce::ErrorOfForce(const Scene& scene, const Simulation& simulation,
-                           const std::optional<StudiedErrors>& studied) {
+                           const std::optional<StudiedErrors>& studied)
+    : rest_(simulation.rest()) {
   const bool deforms = scene.material && model_of(scene.deformation).deforms();
-  if (deforms && scene.material->element == ElementKind::kLinear) {
-    thin_.emplace(simulation.mesh(), simulation.surface(), fixed_vertices(scene, simulation.mesh()));
-  }
-  const std::optional<double> tried = tried_error(scene, simulation, thin_);
+  if (deforms && scene.material->element == ElementKind::kLinear) add_trials(scene, simulation);
   for (const ToolSettings& tool : scene.tools) {
     const DiscretisationErrors errors = those_by_method({}, deforms, steps_matter(scene, tool));
     std::optional<ElementKind> element;
     if (deforms && !tool.grasps() && !scene.material->locks())
-      element = scene.material->element;  // the estimate is of tips that press
+      element = scene.material->element;  // the table is of tips that press
     const double radius = tool.shape.radius;
-    const bool is_tried = tried && !tool.grasps() && radius == scene.tools.front().shape.radius;
-    tools_.push_back({errors, element, is_tried ? tried : std::nullopt,
+    const bool tried = !tool.grasps() && radius == scene.tools.front().shape.radius;
+    tools_.push_back({errors, element, tried,
                       scene.cutting
                           ? MeshResolution(simulation.surface(), simulation.rest(), radius, simulation.mesh())
                           : MeshResolution(simulation.surface(), simulation.rest(), radius)});
@@ -66,26 +42,41 @@ ErrorOfForce::ErrorOfForce(const Scene& scene, const Simulation& simulation,
   const Vec3 margin = Vec3::Constant(first.shape.radius);
   studied_ = {.errors = those_by_method(studied->errors, deforms, steps_matter(scene, first)),
               .near = {studied->pressed.min - margin, studied->pressed.max + margin},
-              .rest = {simulation.rest().begin(), simulation.rest().end()},
               .most_newton = studied->most_newton};
 }
 
-/// True if a study has pressed there, and about as hard.
-bool ErrorOfForce::was_studied(std::size_t tool, std::span<const VertexLoad> loads) const noexcept {
-  constexpr double kAsHard = 1.5;  // 1.3 times as deep, as the force of a ball goes with its depth ^ 1.5
-  if (!studied_ || tool != 0) return false;
-  // Between vertices that are far apart it bears on these, however near it is: their middle is where it is.
-  Vec3 force = Vec3::Zero(), middle = Vec3::Zero();
+/// Of linear elements.
+void ErrorOfForce::add_trials(const Scene& scene, const Simulation& simulation) {
+  thin_.emplace(simulation.mesh(), simulation.surface(), fixed_vertices(scene, simulation.mesh()));
+  if (simulation.touchable(0).empty()) return;
+  for (const ElementTrial& trial : try_elements(scene, simulation.mesh())) {
+    if (const auto load = sum_of_loads(trial.loads))
+      trials_.push_back({*load, thin_->bears(trial.loads), trial.percent});
+  }
+}
+
+/// The middle is weighted: between vertices that are far apart a tool bears on these, however near it is.
+/// Nothing where it loads nothing that was there at set-up.
+std::optional<ErrorOfForce::Load> ErrorOfForce::sum_of_loads(
+    std::span<const VertexLoad> loads) const noexcept {
+  Load sum{Vec3::Zero(), Vec3::Zero()};
   double all = 0;
   for (const VertexLoad& load : loads) {
     const auto vertex = static_cast<std::size_t>(load.vertex);
-    if (vertex >= studied_->rest.size()) continue;  // one that a cut has made
+    if (vertex >= rest_.size()) continue;  // one that a cut has made
     const double size = load.force.norm();
-    force += load.force;
+    sum.force += load.force;
     all += size;
-    if (all > 0) middle += size / all * (studied_->rest[vertex] - middle);
+    if (all > 0) sum.middle += size / all * (rest_[vertex] - sum.middle);
   }
-  return all > 0 && studied_->near.contains(middle) && force.norm() <= kAsHard * studied_->most_newton;
+  return all > 0 ? std::optional(sum) : std::nullopt;
+}
+
+/// True if a study has pressed there, and about as hard.
+bool ErrorOfForce::was_studied(std::size_t tool, const Load& load) const noexcept {
+  constexpr double kAsHard = 1.5;  // 1.3 times as deep, as the force of a ball goes with its depth ^ 1.5
+  return studied_ && tool == 0 && studied_->near.contains(load.middle) &&
+         load.force.norm() <= kAsHard * studied_->most_newton;
 }
 
 std::optional<double> ErrorOfForce::finest(std::size_t tool, std::span<const Triangle> touchable) const {
@@ -94,26 +85,41 @@ std::optional<double> ErrorOfForce::finest(std::size_t tool, std::span<const Tri
 
 DiscretisationErrors ErrorOfForce::of_step(std::size_t tool,
                                            std::span<const VertexLoad> loads) const noexcept {
-  if (was_studied(tool, loads)) return studied_->errors;
-  if (thin_ && thin_->bears(loads)) return beyond_table(tool);
-  return of(tool, tools_[tool].mesh.of(loads));
-}
-
-DiscretisationErrors ErrorOfForce::beyond_table(std::size_t tool) const noexcept {
-  DiscretisationErrors errors = tools_[tool].known;
-  if (tools_[tool].tried) errors.mesh = {ErrorSource::kEstimated, static_cast<float>(*tools_[tool].tried)};
-  return errors;
-}
-
-DiscretisationErrors ErrorOfForce::of(std::size_t tool,
-                                      std::optional<double> elements_per_radius) const noexcept {
   const OfTool& of = tools_[tool];
-  if (!of.element) return beyond_table(tool);
+  const std::optional<Load> load = sum_of_loads(loads);
+  if (load && was_studied(tool, *load)) return studied_->errors;
+  const bool thin = thin_ && thin_->bears(loads);
+  const std::optional<double> tried = of.tried && load ? by_trial(*load, thin) : std::nullopt;
+  const std::optional<double> fine = by_table(tool, loads);
   DiscretisationErrors errors = of.known;
-  if (!elements_per_radius) return errors;
-  if (const auto percent = estimated_mesh_error(*of.element, *elements_per_radius))
-    errors.mesh = {ErrorSource::kEstimated, static_cast<float>(*percent)};
+  if (tried || (fine && !thin)) {
+    errors.mesh = {ErrorSource::kEstimated,
+                   static_cast<float>(std::max(tried.value_or(0), fine.value_or(0)))};
+  }
   return errors;
+}
+
+std::optional<double> ErrorOfForce::by_table(std::size_t tool,
+                                             std::span<const VertexLoad> loads) const noexcept {
+  const std::optional<double> elements_per_radius = tools_[tool].mesh.of(loads);
+  if (!tools_[tool].element || !elements_per_radius) return {};
+  return estimated_mesh_error(*tools_[tool].element, *elements_per_radius);
+}
+
+/// By the nearest press, on tissue that bends or that does not: where a strip is thin, pushed aside it is
+/// thick.
+std::optional<double> ErrorOfForce::by_trial(const Load& load, bool thin) const noexcept {
+  constexpr double kAlong = 0.5;  // cosine
+  const auto is_such = [&](const Trial& trial) {
+    const Vec3& force = trial.load.force;
+    return trial.thin == thin && std::abs(force.dot(load.force)) >= kAlong * force.norm() * load.force.norm();
+  };
+  const auto distance = [&](const Trial& trial) { return (trial.load.middle - load.middle).norm(); };
+  const Trial* nearest = nullptr;
+  for (const Trial& trial : trials_) {
+    if (is_such(trial) && (nearest == nullptr || distance(trial) < distance(*nearest))) nearest = &trial;
+  }
+  return nearest != nullptr ? std::optional(nearest->percent) : std::nullopt;
 }
 
 }  // namespace palpate::sim

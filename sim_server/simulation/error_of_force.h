@@ -15,11 +15,13 @@ struct StudiedErrors {
 
 /// Errors of the force on each tool by mesh and time step. Measured where a study of the scene has pressed,
 /// within a radius of the tool of where it did, and up to 1.5 times as hard. Elsewhere the mesh's share
-/// is estimated in each step from how fine it is where the tool presses (`estimated_mesh_error`); where that
-/// table says nothing, of linear elements on tissue that bends (`ThinTissue`), or that is all but
-/// incompressible (`Material::locks`), by a press at set-up (`ElementTrial`), of a tool with the radius of
-/// the first, or not at all. That of the time step is unknown, but where the force follows from the poses of
-/// the step alone, so that no step is too long. One thread.
+/// is estimated in each step: the larger of what a table says of how fine it is where the tool presses
+/// (`estimated_mesh_error`) and, of linear elements, of the nearest press at set-up in such a direction
+/// (`ElementTrial`), of a tool with the radius of the first. Of tissue that bends (`ThinTissue`), or that is
+/// all but incompressible
+/// (`Material::locks`), the table says nothing: without a press on such it is unknown. That of the time step
+/// is unknown, but where the force follows from the poses of the step alone, so that no step is too long. One
+/// thread.
 class ErrorOfForce {
  public:
   /// `studied`: of this scene, pressed with its first tool. `simulation` is read here only. O(vertices x
@@ -47,27 +49,39 @@ class ErrorOfForce {
   DiscretisationErrors of_all_steps(std::size_t tool) const noexcept { return tools_[tool].steps.mean(); }
 
  private:
-  DiscretisationErrors of(std::size_t tool, std::optional<double> elements_per_radius) const noexcept;
-  DiscretisationErrors beyond_table(std::size_t tool) const noexcept;
-  bool was_studied(std::size_t tool, std::span<const VertexLoad> loads) const noexcept;
+  void add_trials(const Scene& scene, const Simulation& simulation);
+  std::optional<double> by_table(std::size_t tool, std::span<const VertexLoad> loads) const noexcept;
+  /// What a tool loads: the middle of it at rest, m, and how, N.
+  struct Load {
+    Vec3 middle, force;
+  };
+  std::optional<double> by_trial(const Load& load, bool thin) const noexcept;
+  std::optional<Load> sum_of_loads(std::span<const VertexLoad> loads) const noexcept;
+  bool was_studied(std::size_t tool, const Load& load) const noexcept;
 
   struct OfTool {
     DiscretisationErrors known;          // whatever it touches
-    std::optional<ElementKind> element;  // for the estimate; nothing where there is none
-    std::optional<double> tried;         // % by a trial, where the table says nothing
+    std::optional<ElementKind> element;  // for the table; nothing where it says nothing
+    bool tried;                          // the trials are of such a tool
     MeshResolution mesh;
     ErrorMeans steps = {};
   };
   /// Errors that a study measured, and the place and the force up to which they hold.
   struct Studied {
     DiscretisationErrors errors;
-    Box near;                // where it pressed, at rest, m
-    std::vector<Vec3> rest;  // the surface vertices, m
+    Box near;  // where it pressed, at rest, m
     double most_newton;
   };
+  struct Trial {
+    Load load;
+    bool thin;  // on tissue that bends
+    double percent;
+  };
+  std::vector<Vec3> rest_;  // the surface vertices, m
   std::vector<OfTool> tools_;
   std::optional<Studied> studied_;  // with the first tool
   std::optional<ThinTissue> thin_;  // of linear elements
+  std::vector<Trial> trials_;       // of them
 };
 
 }  // namespace palpate::sim

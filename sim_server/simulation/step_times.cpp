@@ -28,17 +28,6 @@ const Vec3& at(const Simulation& simulation, int vertex) {
   return simulation.mesh().vertices[simulation.surface().vertices[vertex]];
 }
 
-/// Outward normals at rest, weighted by area.
-std::vector<Vec3> vertex_normals(const Simulation& simulation) {
-  std::vector<Vec3> normals(simulation.surface().vertices.size(), Vec3::Zero());
-  for (const Triangle& t : simulation.surface().triangles) {
-    const Vec3 &a = at(simulation, t[0]), &b = at(simulation, t[1]), &c = at(simulation, t[2]);
-    for (const int corner : t) normals[corner] += (b - a).cross(c - a);
-  }
-  for (Vec3& normal : normals) normal.normalize();
-  return normals;
-}
-
 /// Reachable vertices, the fixed ones only if there are no others, from the middle outwards.
 std::vector<int> candidates(const Scene& scene, const Simulation& simulation, std::size_t tool) {
   std::vector<int> all = reachable_vertices(simulation.surface(), simulation.mesh(),
@@ -103,12 +92,12 @@ std::vector<ToolForce> approach(const Scene& scene, Simulation& simulation, Site
 
 /// Returns where the tool presses; nothing: it reaches nothing.
 std::optional<Press> press_of(const Scene& scene, Simulation& simulation, std::size_t tool, Sites others) {
-  const std::vector<Vec3> normals = vertex_normals(simulation);
+  const std::vector<Vec3> normals = normals_at_rest(simulation);
   std::vector<Press> unsettled;
   const double radius = scene.tools[tool].shape.radius;
   for (const int vertex : clear_of(others, scene, tool, simulation, candidates(scene, simulation, tool))) {
     std::vector<std::optional<Press>> sites(tool + 1);
-    sites[tool] = {at(simulation, vertex) + (1 - kDepth) * radius * normals[vertex], normals[vertex]};
+    sites[tool] = press_on(at(simulation, vertex), normals[vertex], radius);
     const ToolForce force = approach(scene, simulation, sites)[tool];
     simulation.step(std::vector<ToolInput>(simulation.tools()), 0);
     if (force.contacts > 0 && !force.flagged) return sites[tool];
@@ -118,6 +107,20 @@ std::optional<Press> press_of(const Scene& scene, Simulation& simulation, std::s
 }
 
 }  // namespace
+
+std::vector<Vec3> normals_at_rest(const Simulation& simulation) {
+  std::vector<Vec3> normals(simulation.surface().vertices.size(), Vec3::Zero());
+  for (const Triangle& t : simulation.surface().triangles) {
+    const Vec3 &a = at(simulation, t[0]), &b = at(simulation, t[1]), &c = at(simulation, t[2]);
+    for (const int corner : t) normals[corner] += (b - a).cross(c - a);
+  }
+  for (Vec3& normal : normals) normal.normalize();
+  return normals;
+}
+
+Press press_on(const Vec3& surface, const Vec3& normal, double radius) noexcept {
+  return {surface + (1 - kDepth) * radius * normal, normal};
+}
 
 Press find_press(const Scene& scene, Simulation& simulation) {
   if (const auto site = press_of(scene, simulation, 0, {})) return *site;

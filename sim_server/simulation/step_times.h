@@ -9,6 +9,12 @@ struct Press {
   Vec3 place, normal;
 };
 
+/// Unit outward normals of the surface vertices at rest, by the areas of their triangles. O(triangles).
+std::vector<Vec3> normals_at_rest(const Simulation& simulation);
+
+/// The place on a point of the surface (m), pressed to 40 % of the tool's radius (m).
+Press press_on(const Vec3& surface, const Vec3& normal, double radius) noexcept;
+
 /// A place in the middle of what the first tool can reach, on a vertex that is not fixed if there is one,
 /// pressed to 40 % of the tool's radius. Tries 64 vertices, nearest to the middle first, until one gives
 /// settled contact; if none does, takes one that gives any. Leaves the tool lifted. Set-up only.

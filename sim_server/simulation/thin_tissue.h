@@ -6,19 +6,19 @@
 
 namespace palpate::sim {
 
-/// Tissue that bends under a tool, of too few elements to do so: linear ones bend too stiffly by several
-/// hundred percent where one layer of them is all there is (a clamped sheet, by plate theory 442 %), which a
-/// table of elements to a radius of the tool knows nothing of. One thread.
+/// Tissue that bends under a tool, of elements too long to do so: linear ones bend too stiffly, by one to
+/// three times the square of an edge over the thickness (clamped sheets and beams, by plate and beam theory),
+/// however many layers of them there are. A table of elements to a radius of the tool knows nothing of that.
+/// One thread.
 class ThinTissue {
  public:
-  static constexpr int kLayers = 3;  ///< of elements, fewer than which are too few
+  /// Thickness, in longest edges of its surface, below which tissue is thin; and of a bar, which bends more.
+  static constexpr double kEdges = 2.5, kEdgesOfBar = 3.5;
 
   /// `held`: vertices of `mesh` that do not move: tissue that rests on them does not bend.
-  /// O(tetrahedra + surface), with all vertices within two edges of each of the surface.
+  /// O(tetrahedra + surface), with all vertices within `kEdgesOfBar` edges of each of the surface.
   ThinTissue(const TetMesh& mesh, const Surface& surface, const std::vector<int>& held);
 
-  /// True if some face at this vertex of the surface is of such tissue.
-  bool is_thin_at(int vertex) const noexcept { return !thin_[static_cast<std::size_t>(vertex)].empty(); }
   /// True if at least half of what a tool loads the surface with presses such tissue through its thickness.
   /// O(loads); does not allocate.
   bool bears(std::span<const VertexLoad> loads) const noexcept;

@@ -61,18 +61,18 @@ TEST_CASE("commtest: ages are judged by what a hand can tell") {
   link.age_p99_ms = 137;
   CHECK(grade_of(link) == Grade::kWarn);
   CHECK_THAT(judge(link).reasons.back(), Catch::Contains("137 ms old"));
-  REQUIRE(remedies(link).size() == 1);
-  CHECK_THAT(remedies(link)[0], Catch::Contains("late without being lost"));
+  REQUIRE(judge(link).remedies.size() == 1);
+  CHECK_THAT(judge(link).remedies[0], Catch::Contains("late without being lost"));
 }
 
 TEST_CASE("commtest: bursts, pages that never come and a narrow uplink are named, with a remedy each") {
-  CHECK(remedies(good()).empty());
+  CHECK(judge(good()).remedies.empty());
   TestedLink link = good();
   link.gaps = 3, link.longest_gap_ms = 500, link.faded = 3;
   CHECK(grade_of(link) == Grade::kFail);
   CHECK_THAT(judge(link).reasons.back(),
              Catch::Contains("3 times, once for 500 ms; the force faded 3 times"));
-  CHECK_THAT(remedies(link).at(0), Catch::Contains("bursts"));
+  CHECK_THAT(judge(link).remedies.at(0), Catch::Contains("bursts"));
   link.longest_gap_ms = 299;
   CHECK(grade_of(link) == Grade::kWarn);
   link = good();
@@ -85,12 +85,12 @@ TEST_CASE("commtest: bursts, pages that never come and a narrow uplink are named
   link.sent_mbit_s = 0.8, link.uplink_loss_percent = 50;
   CHECK(grade_of(link) == Grade::kWarn);
   CHECK_THAT(judge(link).reasons.back(), Catch::Contains("your uplink carries 0.4 of the 0.8 Mbit/s"));
-  CHECK_THAT(remedies(link).at(0), Catch::Contains("rate_hz"));
+  CHECK_THAT(judge(link).remedies.at(0), Catch::Contains("rate_hz"));
   link = good();
   link.sent_mbit_s = 0.19, link.slow_percent = 80;
   CHECK(grade_of(link) == Grade::kWarn);
   CHECK_THAT(judge(link).reasons.back(), Catch::Contains("the link is slow: in 80 % of the time"));
-  CHECK_THAT(remedies(link).at(0), Catch::Contains("2 Mbit/s"));
+  CHECK_THAT(judge(link).remedies.at(0), Catch::Contains("2 Mbit/s"));
 }
 
 TEST_CASE("commtest: a good link passes, and each fault has its grade and its reason") {
@@ -120,4 +120,37 @@ TEST_CASE("commtest: a good link passes, and each fault has its grade and its re
   link = good();
   link.connected = false;
   CHECK(grade_of(link) == Grade::kFail);
+}
+
+TEST_CASE("commtest: each fault by itself names what helps against it, and a fault of two figures once") {
+  const auto remedy_of = [](const auto& spoil) {
+    TestedLink link = good();
+    spoil(link);
+    const Verdict verdict = judge(link);
+    CHECK(verdict.grade != Grade::kPass);
+    return verdict.remedies.size() == 1 ? verdict.remedies[0] : "";
+  };
+  // As printed by `studies stability --by-delay`: the tangent keeps 9614 N/m at 38 ms, two tangents 2497.
+  const std::string other_law = remedy_of([](TestedLink& link) { link.stiffest_n_m = 3000; });
+  CHECK_THAT(other_law, Catch::Contains("`--method tangent`, stable up to 9614 N/m"));
+  CHECK_THAT(other_law, Catch::Contains("`[material] young_modulus`"));
+  const std::string softer =
+      remedy_of([](TestedLink& link) { link.stiffest_n_m = 20000, link.law = "tangent"; });
+  CHECK_THAT(softer, Catch::Contains("`[material] young_modulus`") && !Catch::Contains("--method"));
+  CHECK_THAT(remedy_of([](TestedLink& link) { link.samples_hz = 26; }),
+             Catch::Contains("does not hold the rate") && Catch::Contains("`sim_server explain SCENE`"));
+  CHECK_THAT(remedy_of([](TestedLink& link) { link.samples_hz = 26, link.loss_percent = 13; }),
+             Catch::Contains("use a cable"));
+  CHECK_THAT(remedy_of([](TestedLink& link) { link.stiffest_n_m = 0; }), Catch::Contains("`--client`"));
+  CHECK_THAT(remedy_of([](TestedLink& link) { link.connected = false; }), Catch::Contains("sent no sample"));
+  CHECK_THAT(remedy_of([](TestedLink& link) { link.drops_large = true; }), Catch::Contains("mtu 1280"));
+  CHECK_THAT(remedy_of([](TestedLink& link) { link.age_p99_ms = 250; }),
+             Catch::Contains("late without being lost"));
+  CHECK_THAT(remedy_of([](TestedLink& link) { link.age_p99_ms = 301; }),
+             Catch::Contains("late without being lost"));
+  CHECK_THAT(remedy_of([](TestedLink& link) {
+               link.gaps = 3, link.longest_gap_ms = 500, link.age_p99_ms = 400, link.loss_percent = 20,
+               link.samples_hz = 20, link.uplink_loss_percent = 20;
+             }),
+             Catch::Contains("in bursts"));
 }

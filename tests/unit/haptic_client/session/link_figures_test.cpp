@@ -63,19 +63,53 @@ TEST_CASE(
     for (Time t = 5s; t <= 5s + seconds; t += 10ms) {
       figures.sample({.number = ++number}, t);
       if (requests_every > 0s && (t - 5s) % requests_every == 0s) figures.requested_pages(t);
-      if (pages-- > 0) figures.page(t);
+      if (pages-- > 0) figures.page();
     }
     return figures.drops_large();
   };
   CHECK(after(3100ms, 10ms, 0));
-  CHECK(after(3100ms, 250ms, 0));       // at the level plain
-  CHECK_FALSE(after(3000ms, 10ms, 0));  // not yet
-  CHECK_FALSE(after(3100ms, 10ms, 1));  // they come
-  CHECK_FALSE(after(3100ms, 0s, 0));    // none is wanted: the law needs none, or nothing is near
-  CHECK_FALSE(after(3100ms, 1s, 0));    // too few to say
-  LinkFigures silent;                   // nothing comes at all: that is no matter of size
+  CHECK(after(3100ms, 250ms, 0));        // at the level plain
+  CHECK_FALSE(after(3000ms, 10ms, 0));   // not yet
+  CHECK_FALSE(after(3100ms, 10ms, 12));  // they came, until less than 3 s ago
+  CHECK_FALSE(after(3100ms, 0s, 0));     // none is wanted: the law needs none, or nothing is near
+  CHECK_FALSE(after(3100ms, 1s, 0));     // too few to say
+  LinkFigures silent;                    // nothing comes at all: that is no matter of size
   silent.sample({.number = 1}, 5s);
   for (Time t = 5s; t < 15s; t += 10ms) silent.requested_pages(t);
   CHECK_FALSE(silent.drops_large());
   CHECK_THAT(large_datagrams_text(), Catch::Contains("fragments") && Catch::Contains("mtu 1280"));
+}
+
+TEST_CASE("link figures: a way that begins to drop large datagrams after the first pages is named as well") {
+  LinkFigures figures;
+  std::uint64_t number = 0;
+  const auto go_on = [&](Time from, Time to, Time page_every) {
+    for (Time t = from; t < to; t += 10ms) {
+      figures.sample({.number = ++number}, t);
+      figures.requested_pages(t);
+      if (page_every > 0s && (t - from) % page_every == 0s) figures.page();
+    }
+    return figures.drops_large();
+  };
+  CHECK_FALSE(go_on(5s, 65010ms, 2500ms));  // they come late, but come
+  CHECK_FALSE(go_on(65010ms, 68s, 0s));
+  CHECK(go_on(68s, 69s, 0s));
+  CHECK_FALSE(go_on(69s, 70s, 500ms));  // they come again
+}
+
+TEST_CASE("link figures: an outage, or a burst of requests after a rest, is no way that drops large ones") {
+  LinkFigures figures;
+  std::uint64_t number = 0;
+  for (Time t = 5s; t < 15s; t += 10ms) {
+    if (t < 5100ms || t > 14900ms) figures.sample({.number = ++number}, t);
+    figures.requested_pages(t);
+  }
+  CHECK_FALSE(figures.drops_large());  // the link was down for 9.8 s
+  figures.page();
+  figures.requested_pages(15s);  // what it asks for came with the page before
+  for (Time t = 15s; t < 75200ms; t += 10ms) {
+    figures.sample({.number = ++number}, t);
+    if (t >= 75s) figures.requested_pages(t);
+  }
+  CHECK_FALSE(figures.drops_large());
 }

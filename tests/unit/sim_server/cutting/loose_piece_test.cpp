@@ -1,6 +1,7 @@
 // A piece that a cut has made loose, and a tool pushes: it flies and turns as a body, in each linear model.
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "sim_server/elasticity/rotations.h"
@@ -169,6 +170,20 @@ TEST_CASE("tissue that is still held is judged inside out though a piece is loos
   CHECK(answer.flagged);
   CHECK(answer.doubt == Doubt::kInsideOut);
   CHECK(half.simulation.tool(0).surface_strain(half.simulation.positions(), half.simulation.rest()) < 3);
+}
+
+TEST_CASE("jaws that take a loose piece away are not judged by the tissue between, which is gone") {
+  Scene scene = loose_scene("tensor_mass", 1);
+  const Vec3 place(0.0075, 0.002, 0.0005);
+  scene.tools[0].grasp_place = place;
+  LooseHalf half(scene);
+  for (int i = 0; i < 200; ++i) {
+    const ToolAnswer answer = step(half.simulation, place + Vec3(1.5e-4 * i, 0, 0), {}, kShortStep);
+    REQUIRE(half.simulation.resection()->totals().loose_pieces == 1);
+    REQUIRE(answer.contacts > 0);
+  }
+  CHECK(half.simulation.flagged().to_text().empty());
+  CHECK(half.simulation.strain()->to_json()["largest"] < 0.5);
 }
 
 TEST_CASE("tissue that is still held runs away though a piece is loose, and the piece alone does not") {

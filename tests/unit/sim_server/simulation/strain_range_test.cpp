@@ -63,6 +63,41 @@ TEST_CASE("a shallow press is within the linear law, a press by more than the ra
   CHECK(simulation.strain()->to_json()["beyond_steps"] == 1);
 }
 
+TEST_CASE("tissue held from the start, or by a button, is judged for strain as pressed tissue is") {
+  const bool from_the_start = GENERATE(true, false);
+  const Vec3 place(0.0011, 0.0055, 0.0007);  // that presses by 0.5 mm
+  Scene scene =
+      scene_of({.young_modulus = 1e4, .poisson_ratio = 0.45}, {Vec3(-1, -1, -1), Vec3(1, -0.0399, 1)}, 0.006);
+  scene.tools.front().grasp_buttons = from_the_start ? 0 : 1;
+  if (from_the_start) scene.tools.front().grasp_place = place;
+  Simulation simulation(scene,
+                        grid_block(lines(-0.03, 0.03, 12), lines(-0.04, 0, 8), lines(-0.03, 0.03, 12)));
+  const auto pull = [&](double up) {
+    std::vector<ToolInput> input(1);
+    input.front().pose = ToolPose(place + Vec3(0, up, 0));
+    input.front().buttons = 1;
+    return simulation.step(input, 1.0 / 30).front();
+  };
+  CHECK_FALSE(pull(0).strained);
+  CHECK_FALSE(pull(0.001).strained);
+  // An edge of 5 mm beside vertices that go 8 mm up is as long as the square root of 5^2 + 8^2 where its
+  // other end stays; it follows by at most half of that.
+  const ToolAnswer held = pull(0.008);
+  CHECK(held.contacts >= 3);
+  CHECK(held.strained);
+  CHECK_FALSE(held.flagged);
+  double largest = 0;
+  for (const Triangle& t : simulation.surface().triangles) {
+    for (int i = 0; i < 3; ++i) {
+      const auto a = static_cast<std::size_t>(t[i]), b = static_cast<std::size_t>(t[(i + 1) % 3]);
+      largest = std::max(largest, std::abs((simulation.positions()[a] - simulation.positions()[b]).norm() /
+                                               (simulation.rest()[a] - simulation.rest()[b]).norm() -
+                                           1));
+    }
+  }
+  CHECK_THAT(simulation.strain()->to_json()["largest"].get<double>(), WithinRel(largest, 1e-9));
+}
+
 TEST_CASE("a wall that does not deform has no strain") {
   Scene scene;
   scene.deformation.model = "rigid";
