@@ -46,7 +46,7 @@ void LinkFigures::requested_pages(Time now) noexcept {
 
 /// A link that is down altogether says nothing of the size of its datagrams: the newest sample is late, too.
 bool LinkFigures::drops_large() const noexcept {
-  constexpr std::uint64_t kEnough = 12;  // requests: of 3 s at the fewest a second
+  constexpr std::uint64_t kEnough = 6;  // of those that come every 250 ms at the fewest, one in 450 ms counts
   return unanswered >= kEnough && newest_sample - first_unanswered > kPatience;
 }
 
