@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <new>
 
 #include "common/error.h"
 #include "sim_server/mesh/bounding_box.h"
@@ -14,11 +15,13 @@ namespace {
 
 constexpr int kMostNodes = 6000;    // of quadratic elements: their factor takes about a second
 constexpr std::size_t kPlaces = 4;  // each adds a reach to the compliance of quadratic elements
-constexpr double kSpread = 0.25;    // of the diagonal of the reach: how far from each other the places are
-constexpr double kAcross = 0.5;     // cosine between normals of places that may be nearer
-constexpr double kAround = 1.1;     // radii around the tool: it presses straight down
-constexpr double kSmooth = 0.75;    // cosine between the normals of a vertex and of each of its faces
-constexpr double kStep = 1;         // s: tissue at rest takes any
+constexpr int kMostInReach =
+    300;                          // vertices, of all places: quadratic elements have four times as many nodes
+constexpr double kSpread = 0.25;  // of the diagonal of the reach: how far from each other the places are
+constexpr double kAcross = 0.5;   // cosine between normals of places that may be nearer
+constexpr double kAround = 1.1;   // radii around the tool: it presses straight down
+constexpr double kSmooth = 0.75;  // cosine between the normals of a vertex and of each of its faces
+constexpr double kStep = 1;       // s: tissue at rest takes any
 
 /// The same tissue at rest, of the linear law, under the first tool alone.
 Scene at_rest(Scene scene) {
@@ -66,13 +69,40 @@ void sort_by_compliance(std::vector<int>& vertices, const Simulation& simulation
   std::ranges::stable_sort(vertices, std::greater(), [&](int v) { return yields[v]; });
 }
 
+/// What a tool at a place can touch.
+Box around(const Press& place, double radius) {
+  const Vec3 margin = Vec3::Constant(kAround * radius);
+  return {place.place - margin, place.place + margin};
+}
+
+/// Leaves as many of the first places as contact of quadratic elements has memory and time for: with a tool
+/// that is large against the organ each reaches all of it.
+void bound_reach(std::vector<Press>& places, const Simulation& linear, double radius) {
+  std::ptrdiff_t in_reach = 0;
+  const auto is_too_much = [&](const Press& place) {
+    const Box box = around(place, radius);
+    in_reach += std::ranges::count_if(linear.rest(), [&](const Vec3& x) { return box.contains(x); });
+    return in_reach > kMostInReach;
+  };
+  places.erase(std::ranges::find_if(places, is_too_much), places.end());
+}
+
+/// The vertex nearest to the middle of these.
+int middle_of(std::span<const int> vertices, const Simulation& simulation) {
+  const auto at = [&](int v) -> const Vec3& { return simulation.rest()[static_cast<std::size_t>(v)]; };
+  Vec3 middle = Vec3::Zero();
+  for (const int v : vertices) middle += at(v) / static_cast<double>(vertices.size());
+  return *std::ranges::min_element(vertices, {}, [&](int v) { return (at(v) - middle).squaredNorm(); });
+}
+
 /// The middle of the reach, then the places that yield most, apart or across each other.
-std::vector<Press> places_to_press(const Scene& scene, Simulation& linear) {
-  std::vector<Press> places{find_press(scene, linear)};
+std::vector<Press> places_to_press(const Scene& scene, const Simulation& linear) {
   const std::vector<Vec3> normals = normals_at_rest(linear);
   std::vector<int> vertices = smooth_vertices(linear, normals);
-  sort_by_compliance(vertices, linear, normals);
   const auto at = [&](int v) -> const Vec3& { return linear.rest()[static_cast<std::size_t>(v)]; };
+  const int middle = middle_of(vertices, linear);
+  std::vector<Press> places{press_on(at(middle), normals[middle], scene.tools[0].shape.radius)};
+  sort_by_compliance(vertices, linear, normals);
   std::vector<Vec3> reach;
   for (const int v : vertices) reach.push_back(at(v));
   const double apart = kSpread * diagonal_of(reach);
@@ -102,18 +132,19 @@ std::optional<Vec3> press(Simulation& simulation, std::size_t tool, const Press&
 
 /// Quadratic elements in reach of these places alone, each of a tool of its own: their compliance is dear.
 Simulation quadratic_near(Scene scene, const TetMesh& mesh, std::span<const Press> places) {
-  const Vec3 margin = Vec3::Constant(kAround * scene.tools[0].shape.radius);
   scene.material->element = ElementKind::kQuadratic;
   scene.tools.resize(places.size(), scene.tools[0]);
   for (std::size_t i = 0; i < places.size(); ++i)
-    scene.tools[i].reach = Box{places[i].place - margin, places[i].place + margin};
+    scene.tools[i].reach = around(places[i], scene.tools[0].shape.radius);
   return Simulation(scene, mesh);
 }
 
 std::vector<ElementTrial> press_both(const Scene& scene, const TetMesh& mesh) {
   const double radius = scene.tools[0].shape.radius;
   Simulation linear(scene, mesh);
-  const std::vector<Press> places = places_to_press(scene, linear);
+  std::vector<Press> places = places_to_press(scene, linear);
+  bound_reach(places, linear, radius);
+  if (places.empty()) return {};
   Simulation quadratic = quadratic_near(scene, mesh, places);
   std::vector<ElementTrial> trials;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -135,7 +166,9 @@ std::vector<ElementTrial> try_elements(const Scene& scene, const TetMesh& mesh) 
   if (info.vertices + info.edges > kMostNodes) return {};
   try {
     return press_both(at_rest(scene), mesh);
-  } catch (const Error&) {  // as where memory is short: then nothing is known, as without a trial
+  } catch (const Error&) {  // nothing is known then, as without a trial
+    return {};
+  } catch (const std::bad_alloc&) {
     return {};
   }
 }

@@ -3,6 +3,7 @@
 #include <functional>
 #include <numbers>
 
+#include "sim_server/simulation/element_trial.h"
 #include "sim_server/study/studied_errors.h"
 #include "tests/support/catch.h"
 #include "tests/support/scenes.h"
@@ -273,6 +274,18 @@ TEST_CASE("error of the force: of a slender beam that is too large to try, no sm
   CAPTURE(beam.told.percent);
   CHECK(beam.too_stiff > 1.5);
   CHECK(beam.told.source == ErrorSource::kUnknown);
+}
+
+TEST_CASE("error of the force: nothing is tried with a tool that reaches most of an organ of many vertices") {
+  constexpr double kLarge = 0.03;
+  const Scene scene =
+      test::scene_of({.young_modulus = kModulus}, {Vec3(-1, -1, -1), Vec3(1, 1e-4, 1)}, kLarge);
+  const TetMesh mesh =
+      test::corner_block({0.06, 0.002, 0.06}, {20, 1, 20});  // 882 vertices, 4 times as many nodes
+  CHECK(try_elements(scene, mesh).empty());
+  Scene small = scene;
+  small.tools[0].shape.radius = kRadius;
+  CHECK(try_elements(small, mesh).size() > 1);
 }
 
 TEST_CASE("error of the force: where a thick beam ends in a thin one, the press on that counts") {
