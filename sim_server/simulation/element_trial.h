@@ -14,9 +14,9 @@ struct ElementTrial {
 /// Presses with the first tool of a scene by 0.4 of its radius, in the middle of its reach and where the
 /// surface yields most, a quarter of the reach apart or across: the middle of a sheet, the end of a beam, two
 /// ways. Tissue at rest, of the linear law, on `mesh`, which has no vertices between corners. Leaves out
-/// presses that have not settled, and places from where on the tool would reach more than 300 vertices in all.
-/// Empty where quadratic elements have more than 6000 nodes, the tissue can be cut, or the tool holds it.
-/// Set-up only: two simulations, about a second at most.
+/// presses that have not settled, and places from where on the tool would reach more than 300 vertices in
+/// all. Empty where quadratic elements have more than 6000 nodes, the tissue can be cut, or the tool holds
+/// it. Set-up only: two simulations, about a second at most.
 std::vector<ElementTrial> try_elements(const Scene& scene, const TetMesh& mesh);
 
 }  // namespace palpate::sim
