@@ -65,6 +65,7 @@ TestedLink tested_link(const Json& tool, double seconds) {
   const double up_came = link["uplink"]["came"].get<double>(),
                up_lost = link["uplink"]["lost"].get<double>();  // as the server counts them
   return {.law = tool["rendered"]["law"].get<std::string>(),
+          .seconds = seconds,
           .age_p99_ms = link["age_ms"]["p99"].get<double>(),
           .stiffest_n_m = link["stiffest_n_m"].get<double>(),
           .samples_hz = came / seconds,  // of all the time, so that a server that went silent shows
