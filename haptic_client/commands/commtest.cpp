@@ -39,8 +39,15 @@ Json probe_report(const LinkProbe::Figures& f) {
   return {{"ms", quantiles(f.round_trip_ns, 1e6)},
           {"jitter_ms", 1e-6 * f.jitter_ns},
           {"sent", f.sent},
+          {"bytes_up", f.bytes_up},
           {"lost", f.lost},
           {"reordered", f.reordered}};
+}
+
+constexpr double kHeaders = 28;  // bytes of IPv4 and UDP, of each datagram
+
+double kbit_s(double bytes, double datagrams, double seconds) {
+  return 8e-3 * (bytes + kHeaders * datagrams) / seconds;
 }
 
 double percent(double part, double entire) {
@@ -60,11 +67,11 @@ double slow_percent(const Json& levels) {
 TestedLink tested_link(const Json& tool, double seconds) {
   const Json& link = tool["link"];
   const double came = tool["force"]["samples"].get<double>(), lost = link["values_lost"].get<double>();
-  constexpr double kHeaders = 28;  // bytes of IPv4 and UDP, of each datagram
   const double loss = percent(lost, lost + came);
   const double up_came = link["uplink"]["came"].get<double>(),
                up_lost = link["uplink"]["lost"].get<double>();  // as the server counts them
   return {.law = tool["rendered"]["law"].get<std::string>(),
+          .seconds = seconds,
           .age_p99_ms = link["age_ms"]["p99"].get<double>(),
           .stiffest_n_m = link["stiffest_n_m"].get<double>(),
           .samples_hz = came / seconds,  // of all the time, so that a server that went silent shows
@@ -74,18 +81,22 @@ TestedLink tested_link(const Json& tool, double seconds) {
           .longest_gap_ms = link["longest_gap_ms"].get<double>(),
           .gaps = link["gaps"].get<std::uint64_t>(),
           .faded = tool["safety"]["ramped"].get<std::uint64_t>(),
-          .sent_mbit_s =
-              8e-6 * (link["bytes_up"].get<double>() + kHeaders * link["sent"].get<double>()) / seconds,
+          .sent_mbit_s = 1e-3 * kbit_s(link["bytes_up"].get<double>(), link["sent"].get<double>(), seconds),
           .uplink_loss_percent = percent(up_lost, up_came + up_lost),
           .slow_percent = slow_percent(link["levels_s"]),
           .drops_large = link["drops_large"].get<bool>()};
 }
 
-void print_round_trip(const Json& trip) {
-  fmt::print("  round trip  {}; jitter {:.3g} ms; {} of {} lost ({:.2f} %), {} reordered\n",
-             quantiles_text(trip["ms"], "ms"), trip["jitter_ms"].get<double>(), trip["lost"].get<long>(),
-             trip["sent"].get<long>(), percent(trip["lost"].get<double>(), trip["sent"].get<double>()),
-             trip["reordered"].get<long>());
+void print_round_trip(const Json& trip, double seconds) {
+  const Json& ms = trip["ms"];
+  fmt::print(
+      "  round trip  {:.4g} ms (p50), {:.4g} (max); jitter {:.3g} ms; {} of {} lost ({:.2f} %), {} "
+      "reordered; "
+      "these took {:.0f} kbit/s up beside the session\n",
+      ms["p50"].get<double>(), ms["max"].get<double>(), trip["jitter_ms"].get<double>(),
+      trip["lost"].get<long>(), trip["sent"].get<long>(),
+      percent(trip["lost"].get<double>(), trip["sent"].get<double>()), trip["reordered"].get<long>(),
+      kbit_s(trip["bytes_up"].get<double>(), trip["sent"].get<double>(), seconds));
 }
 
 void print_session(const Json& tool, double seconds) {
@@ -165,7 +176,7 @@ int test_link(const ClientConfig& requested, const CommtestOptions& options) {
       {"verdict",
        {{"grade", name_of(verdict.grade)}, {"reasons", verdict.reasons}, {"what_to_check", causes}}}};
   fmt::print("haptic_client: link to {}\n", config.server);
-  print_round_trip(report["round_trip"]);
+  print_round_trip(report["round_trip"], seconds);
   print_session(of_tool, seconds);
   print_verdict(report["verdict"]);
   if (options.json) write_json(*options.json, report);
@@ -248,7 +259,7 @@ Command commtest_command() {
           .summary = "Is the link to a server good enough? Or, with --usb, the loop of a device",
           .footer =
               "A session as `run` would have it, by a simulated hand that holds a tool meanwhile, and "
-              "round trips beside it.\n"
+              "five round trips a second beside it, which take 12 kbit/s up.\n"
               "The verdict is that of the stability study: PASS, WARN, or FAIL (exit code 1).\n"
               "Examples: haptic_client commtest 192.168.1.20:45130 --client configs/clients/liver.toml "
               "--key palpate.key\n"

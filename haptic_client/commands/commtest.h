@@ -15,9 +15,9 @@ struct CommtestOptions {
 };
 
 /// Tests the link to `config.server`: a session as `run` would have it, with a simulated hand on the client
-/// file's motion in the place of its device, and beside it 200 round trips a second that need no session.
-/// Prints what it measured and a verdict from the stability study. Throws `Error`. Returns 0 (PASS, WARN) or
-/// 1 (FAIL).
+/// file's motion in the place of its device, and beside it five round trips a second (`LinkProbe`) that need
+/// no session. Prints what it measured and a verdict from the stability study. Throws `Error`. Returns 0
+/// (PASS, WARN) or 1 (FAIL).
 int test_link(const ClientConfig& config, const CommtestOptions& options);
 
 /// Tests the loop of a device in the same way: reads it and writes zero force at its rate. Throws `Error`.

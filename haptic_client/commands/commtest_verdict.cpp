@@ -35,13 +35,18 @@ constexpr std::array<Row, 11> kRows{{
 }};
 constexpr double kDirect = 14220;  // N/m: what the true force at 500 Hz keeps stable, and no law exceeds
 
-constexpr double kMostLoss = 5;   // %
-constexpr double kMostSlow = 10;  // % of the time
+constexpr double kMostLoss = 5;                       // %
+constexpr double kMostSlow = 10;                      // % of the time
+constexpr double kBetweenBursts = 3;                  // s: gaps that are rarer come one by one
+constexpr double kFades = 1e3 * to_seconds(kOutage);  // ms: of a sample at which the force fades
 
 const std::string kBursts =
     "samples stay out in bursts, as on a radio link or behind traffic of others: use a cable, or a network "
     "of "
     "its own";
+const std::string kLoneGap =
+    "samples stay out now and then: a step of the server that takes long (its report counts late "
+    "deadlines), or a moment of bad radio";
 const std::string kLate =
     "samples are late without being lost: a long way, a queue on it (end other traffic), or a server that "
     "steps "
@@ -76,9 +81,25 @@ void note(Verdict& verdict, std::string reason) {
   verdict.reasons.push_back(std::move(reason));
 }
 
+bool is_slow(const TestedLink& link) {
+  return link.slow_percent > kMostSlow;
+}
+
+/// True if samples stay out so long, or so often, that this is what spoils the other figures. The queue of a
+/// slow link makes gaps too, and is no burst.
+bool has_bursts(const TestedLink& link) {
+  const bool often = static_cast<double>(link.gaps) * kBetweenBursts > link.seconds;
+  return !is_slow(link) && link.gaps > 0 && (link.longest_gap_ms > kFades || often);
+}
+
 /// Outages in a row are one fault, whatever else they make of the figures.
 const std::string& unless_in_bursts(const TestedLink& link, const std::string& remedy) {
-  return link.gaps > 0 ? kBursts : remedy;
+  return has_bursts(link) ? kBursts : remedy;
+}
+
+/// The queue of a slow link delays samples and drops them.
+const std::string& unless_slow_or_in_bursts(const TestedLink& link, const std::string& remedy) {
+  return is_slow(link) ? kSlow : unless_in_bursts(link, remedy);
 }
 
 /// What helps where a scene is stiffer than a law keeps stable: the law that keeps most stable at this age,
@@ -95,13 +116,22 @@ std::string softer_or_other_law(const TestedLink& link, double limit) {
                      most->law, by_most, kSofter);
 }
 
+void judge_width(const TestedLink& link, Verdict& verdict) {
+  if (!is_slow(link)) return;
+  worsen(verdict, Grade::kWarn,
+         fmt::format("the link is slow: in {:.0f} % of the time the ticks between travelled packed or not at "
+                     "all, which left {:.2g} Mbit/s up",
+                     link.slow_percent, link.sent_mbit_s),
+         kSlow);
+}
+
 void judge_stiffness(const TestedLink& link, Verdict& verdict) {
   const auto limit = stable_to(link.law, link.age_p99_ms);
   if (!limit) {
     return worsen(verdict, Grade::kWarn,
                   fmt::format("of \"{}\" with samples {:.0f} ms old the stability study knows nothing",
                               link.law, link.age_p99_ms),
-                  unless_in_bursts(link, kLate));
+                  unless_slow_or_in_bursts(link, kLate));
   }
   const std::string law =
       fmt::format("with samples {:.1f} ms old (p99) \"{}\" is stable up to {:.0f} N/m on the study's walls",
@@ -122,29 +152,21 @@ void judge_stiffness(const TestedLink& link, Verdict& verdict) {
 }
 
 void judge_ages(const TestedLink& link, Verdict& verdict) {
-  const double fades_ms = 1e3 * to_seconds(kOutage);
-  if (link.age_p99_ms > fades_ms) {
+  if (link.age_p99_ms > kFades) {
     worsen(verdict, Grade::kFail,
-           fmt::format("samples are older than the {:.0f} ms at which the force fades", fades_ms),
-           unless_in_bursts(link, kLate));
+           fmt::format("samples are older than the {:.0f} ms at which the force fades", kFades),
+           unless_slow_or_in_bursts(link, kLate));
   } else if (link.age_p99_ms > kNoticedInSpring) {
     worsen(
         verdict, Grade::kWarn,
         fmt::format("a hand notices that a force is late from {:.0f} ms on in a spring and from {:.0f} ms on "
                     "in a damper; samples are {:.0f} ms old",
                     kNoticedInSpring, kNoticedInDamper, link.age_p99_ms),
-        unless_in_bursts(link, kLate));
+        unless_slow_or_in_bursts(link, kLate));
   } else if (link.age_p99_ms > kNoticedInDamper) {
     note(verdict,
          fmt::format("a hand notices in a damper alone that a force is {:.0f} ms late", link.age_p99_ms));
   }
-  if (link.gaps == 0) return;
-  worsen(verdict, link.longest_gap_ms > fades_ms ? Grade::kFail : Grade::kWarn,
-         fmt::format(
-             "no sample came for more than 100 ms {} times, once for {:.0f} ms; the force faded {} times "
-             "(it fades after {:.0f} ms)",
-             link.gaps, link.longest_gap_ms, link.faded, fades_ms),
-         kBursts);
 }
 
 void judge_losses(const TestedLink& link, Verdict& verdict) {
@@ -154,7 +176,7 @@ void judge_losses(const TestedLink& link, Verdict& verdict) {
     worsen(verdict, Grade::kWarn,
            fmt::format("{:.1f} % of the samples were lost (the laws bridge one, not many in a row)",
                        link.loss_percent),
-           unless_in_bursts(link, kBadWayBack));
+           unless_slow_or_in_bursts(link, kBadWayBack));
   }
   if (link.uplink_loss_percent > kMostLoss) {
     worsen(verdict, Grade::kWarn,
@@ -162,20 +184,22 @@ void judge_losses(const TestedLink& link, Verdict& verdict) {
                        link.sent_mbit_s * (1 - 0.01 * link.uplink_loss_percent), link.sent_mbit_s),
            unless_in_bursts(link, kBadUplink));
   }
-  if (link.slow_percent > kMostSlow) {
-    worsen(
-        verdict, Grade::kWarn,
-        fmt::format("the link is slow: in {:.0f} % of the time the ticks between travelled packed or not at "
-                    "all, which left {:.2g} Mbit/s up",
-                    link.slow_percent, link.sent_mbit_s),
-        kSlow);
-  }
   if (link.rate_hz > 0 && link.samples_hz < 0.9 * link.rate_hz) {
     worsen(verdict, Grade::kWarn,
            fmt::format("{:.1f} samples a second came, where the server aims for {:g}", link.samples_hz,
                        link.rate_hz),
-           unless_in_bursts(link, loses ? kBadWayBack : kFewSteps));
+           loses ? unless_slow_or_in_bursts(link, kBadWayBack) : unless_in_bursts(link, kFewSteps));
   }
+}
+
+void judge_gaps(const TestedLink& link, Verdict& verdict) {
+  if (link.gaps == 0) return;
+  worsen(verdict, link.longest_gap_ms > kFades ? Grade::kFail : Grade::kWarn,
+         fmt::format(
+             "no sample came for more than 100 ms {} times, once for {:.0f} ms; the force faded {} times "
+             "(it fades after {:.0f} ms)",
+             link.gaps, link.longest_gap_ms, link.faded, kFades),
+         unless_slow_or_in_bursts(link, kLoneGap));
 }
 
 }  // namespace
@@ -192,9 +216,11 @@ std::optional<double> stable_to(std::string_view law, double age_ms) {
 Verdict judge(const TestedLink& link) {
   Verdict verdict;
   if (!link.connected) return {Grade::kFail, {"no session"}, {kNothingCame}};
+  judge_width(link, verdict);
   judge_stiffness(link, verdict);
   judge_ages(link, verdict);
   judge_losses(link, verdict);
+  judge_gaps(link, verdict);
   return verdict;
 }
 

@@ -16,6 +16,7 @@ std::optional<double> stable_to(std::string_view law, double age_ms);
 /// What a test of a link measured, of which a verdict is made.
 struct TestedLink {
   std::string law;
+  double seconds = 0;                  ///< that the test took
   double age_p99_ms = 0;               ///< of the samples, as they came
   double stiffest_n_m = 0;             ///< that the session rendered; 0: nothing was touched
   double samples_hz = 0, rate_hz = 0;  ///< that came; that the server aims for, 0: as fast as it can
@@ -34,8 +35,10 @@ enum class Grade { kPass, kWarn, kFail };
 struct Verdict {
   Grade grade = Grade::kPass;
   std::vector<std::string>
-      reasons;  ///< sentences; the first says what law, age and stiffness the grade is of
-  /// What is to blame, and what helps; a sentence each, for each reason to give no better grade.
+      reasons;  ///< sentences: of a slow link; what law, age and stiffness the grade is of; then of the rest
+  /// Causes and what helps; a sentence each, for each reason to give no better grade, in the same order. A
+  /// slow link stands for what its queue makes late or drops; bursts (a gap above 300 ms, or more than one
+  /// gap in 3 s) stand for all that they spoil.
   std::vector<std::string> remedies{};
 };
 

@@ -10,7 +10,6 @@ namespace palpate::client {
 using protocol::Direction;
 
 namespace {
-constexpr Time kBetweenHellos = std::chrono::milliseconds(5);  // 200 a second, by which quantiles are known
 constexpr Time kInTransit = std::chrono::seconds(1);  // a Hello that is younger at the end is not lost
 }  // namespace
 
@@ -51,8 +50,9 @@ void LinkProbe::say_hello() {
     return;
   }
   ++figures_.sent;
+  figures_.bytes_up += size;
   Time& said = said_[attempt % kStored];
-  if (said > Time{}) ++figures_.lost;  // that of 5 s ago
+  if (said > Time{}) ++figures_.lost;  // that of 13 s ago
   said = now();
 }
 

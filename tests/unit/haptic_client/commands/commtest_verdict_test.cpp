@@ -10,6 +10,7 @@ namespace {
 /// Of a link with which nothing is wrong.
 TestedLink good() {
   return {.law = "two_tangents",
+          .seconds = 10,
           .age_p99_ms = 20,
           .stiffest_n_m = 50,
           .samples_hz = 30,
@@ -89,7 +90,7 @@ TEST_CASE("commtest: bursts, pages that never come and a narrow uplink are named
   link = good();
   link.sent_mbit_s = 0.19, link.slow_percent = 80;
   CHECK(grade_of(link) == Grade::kWarn);
-  CHECK_THAT(judge(link).reasons.back(), Catch::Contains("the link is slow: in 80 % of the time"));
+  CHECK_THAT(judge(link).reasons.at(0), Catch::Contains("the link is slow: in 80 % of the time"));
   CHECK_THAT(judge(link).remedies.at(0), Catch::Contains("2 Mbit/s"));
 }
 
@@ -153,4 +154,49 @@ TEST_CASE("commtest: each fault by itself names what helps against it, and a fau
                link.samples_hz = 20, link.uplink_loss_percent = 20;
              }),
              Catch::Contains("in bursts"));
+}
+
+// As measured over relays of 0.1 and 0.256 Mbit/s, which lose nothing in bursts: the queue does all of it.
+TEST_CASE("commtest: a slow link comes first, and its queue is no burst") {
+  TestedLink link = good();
+  link.slow_percent = 88, link.sent_mbit_s = 0.19;
+  link.gaps = 9, link.longest_gap_ms = 420, link.faded = 2, link.age_p99_ms = 376, link.loss_percent = 8;
+  link.samples_hz = 25;
+  const Verdict verdict = judge(link);
+  CHECK(verdict.grade == Grade::kFail);
+  CHECK_THAT(verdict.reasons.at(0), Catch::Contains("the link is slow: in 88 % of the time"));
+  REQUIRE(verdict.remedies.size() == 1);
+  CHECK_THAT(verdict.remedies[0], Catch::Contains("2 Mbit/s"));
+  // What a queue does not make is named behind it.
+  link.stiffest_n_m = 20000, link.age_p99_ms = 150, link.uplink_loss_percent = 6;
+  const auto remedies = judge(link).remedies;
+  REQUIRE(remedies.size() == 3);
+  CHECK_THAT(remedies[0], Catch::Contains("2 Mbit/s"));
+  CHECK_THAT(remedies[1], Catch::Contains("young_modulus"));
+  CHECK_THAT(remedies[2], Catch::Contains("lower `rate_hz`"));
+}
+
+TEST_CASE("commtest: a gap that neither lasts nor comes back often hides no other cause") {
+  const auto first_remedy = [](double gap_ms, std::uint64_t gaps, const auto& spoil) {
+    TestedLink link = good();
+    link.gaps = gaps, link.longest_gap_ms = gap_ms;
+    spoil(link);
+    CHECK(judge(link).grade != Grade::kPass);
+    CHECK_THAT(judge(link).reasons.back(), Catch::Contains("no sample came for more than 100 ms"));
+    return judge(link).remedies.at(0);
+  };
+  const auto few_steps = [](TestedLink& link) { link.samples_hz = 26; };
+  const auto narrow = [](TestedLink& link) { link.sent_mbit_s = 0.8, link.uplink_loss_percent = 20; };
+  const auto late = [](TestedLink& link) { link.age_p99_ms = 60; };
+  const auto lossy = [](TestedLink& link) { link.loss_percent = 8; };
+  CHECK_THAT(first_remedy(120, 1, few_steps), Catch::Contains("does not hold the rate"));
+  CHECK_THAT(first_remedy(120, 1, narrow), Catch::Contains("lower `rate_hz`"));
+  CHECK_THAT(first_remedy(120, 1, late), Catch::Contains("late without being lost"));
+  CHECK_THAT(first_remedy(120, 1, lossy), Catch::Contains("single samples are lost"));
+  CHECK_THAT(first_remedy(120, 1, [](TestedLink&) {}), Catch::Contains("now and then"));
+  // In 10 s four gaps are more than one in 3 s, three are not; 300 ms are those at which the force fades.
+  CHECK_THAT(first_remedy(120, 3, few_steps), Catch::Contains("does not hold the rate"));
+  CHECK_THAT(first_remedy(120, 4, few_steps), Catch::Contains("in bursts"));
+  CHECK_THAT(first_remedy(300, 1, few_steps), Catch::Contains("does not hold the rate"));
+  CHECK_THAT(first_remedy(301, 1, few_steps), Catch::Contains("in bursts"));
 }
