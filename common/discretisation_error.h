@@ -6,7 +6,7 @@ namespace palpate {
 /// Source of a figure for an error. On the wire; the numbers never change.
 enum class ErrorSource : std::uint8_t {
   kUnknown = 0,    ///< nobody knows how large it is
-  kEstimated = 1,  ///< by a table, from what is known in each step
+  kEstimated = 1,  ///< by a table, or by presses before the first step
   kMeasured = 2,   ///< by a study of this very scene
   kNone = 3,       ///< the method makes no such error
 };

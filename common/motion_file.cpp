@@ -16,7 +16,10 @@ constexpr std::size_t kRecording = 20;  // rows: fewer are corners of a path tha
 constexpr double kUsualGaps = 10;       // times the median interval: the longest accepted
 constexpr double kUsualSteps = 10;      // times the usual step: there and back is no motion
 constexpr double kLongestAway = 0.5;    // s: a tool that leaps and stays for longer is believed
-constexpr double kFastest = 10;         // m/s: a hand that throws
+// A reach of 0.3 m in 0.3 s peaks at 1.9 m/s and 19 m/s^2 (minimum jerk: Flash and Hogan 1985); twice that.
+constexpr double kHandAcceleration = 40;  // m/s^2
+constexpr double kTremor = 1e-3;          // m: shorter leaps are noise, which hardly changes a force
+constexpr double kFastest = 10;           // m/s: a hand that throws
 constexpr double kSlowRows = 0.5, kLongMotion = 3600;  // s: of rows, and of a motion, in another unit
 constexpr double kUnitError = 0.05;                    // of the length of a quaternion: rounding is less
 constexpr const char* kButtons = "buttons";
@@ -64,7 +67,7 @@ class MotionReader {
   void refuse_gaps() const;
   std::optional<double> usual_step() const;
   std::optional<std::size_t> row_of_return(std::size_t first, double usual) const;
-  bool is_lone_leap(std::size_t i, double usual) const;
+  bool is_leap(std::size_t i, double usual) const;
   void refuse_rows(std::size_t first, std::size_t back, double usual) const;
   void judge_leaps();
   void refuse_speeds() const;
@@ -78,7 +81,7 @@ class MotionReader {
   /// Length of the step to row `i`, m, world.
   double step(std::size_t i) const { return settings_.frame.scale * (rows_.p[i] - rows_.p[i - 1]).norm(); }
   double step_or_none(std::size_t i) const { return i > 0 && i < rows() ? step(i) : 0; }
-  double longest_accepted() const { return settings_.gap.value_or(kUsualGaps * usual_interval_); }
+  double acceleration(std::size_t i) const;
 
   const TrajectorySettings& settings_;
   CsvTable table_;
@@ -198,10 +201,11 @@ void MotionReader::refuse_wrong_unit_of_time() const {
 
 void MotionReader::refuse_gaps() const {
   if (!is_recording() && !settings_.gap) return;
+  const double longest_accepted = settings_.gap.value_or(kUsualGaps * usual_interval_);
   std::size_t worst = 1, found = 0;
   for (std::size_t i = 1; i < rows(); ++i) {
     if (interval(i) > interval(worst)) worst = i;
-    if (interval(i) > longest_accepted()) ++found;
+    if (interval(i) > longest_accepted) ++found;
   }
   if (found == 0) return;
   const double gap = interval(worst);
@@ -225,6 +229,15 @@ std::optional<double> MotionReader::usual_step() const {
   return *usual;
 }
 
+/// Acceleration by the steps to row `i` and from it, m/s^2: a mean over both, so that the motion between the
+/// rows reached it. 0 at either end.
+double MotionReader::acceleration(std::size_t i) const {
+  if (i == 0 || i + 1 >= rows()) return 0;
+  const Vec3 before = (rows_.p[i] - rows_.p[i - 1]) / interval(i);
+  const Vec3 after = (rows_.p[i + 1] - rows_.p[i]) / interval(i + 1);
+  return settings_.frame.scale * 2 * (after - before).norm() / (interval(i) + interval(i + 1));
+}
+
 /// Returns the row that ends an excursion which begins at row `first`: with it the motion is back where usual
 /// steps, or a tenth of the leap, would have led. A leap leads there and a leap back, each of half the
 /// farthest distance at least, and twice as long as the steps around, as no fast motion of several rows has.
@@ -244,9 +257,10 @@ std::optional<std::size_t> MotionReader::row_of_return(std::size_t first, double
   return {};
 }
 
-/// Returns whether the motion is slow before the step to row `i` and after it.
-bool MotionReader::is_lone_leap(std::size_t i, double usual) const {
-  return step(i) > kUsualSteps * std::max({step_or_none(i - 1), step_or_none(i + 1), usual});
+/// True if the step to row `i` is longer than those of the motion, and no hand makes it.
+bool MotionReader::is_leap(std::size_t i, double usual) const {
+  return step(i) > std::max(kUsualSteps * usual, kTremor) &&
+         std::max(acceleration(i - 1), acceleration(i)) > kHandAcceleration;
 }
 
 void MotionReader::refuse_rows(std::size_t first, std::size_t back, double usual) const {
@@ -259,15 +273,16 @@ void MotionReader::refuse_rows(std::size_t first, std::size_t back, double usual
       1e3 * std::min(step(first), step(back)), 1e3 * usual, is_one ? "it" : "them", is_one ? "it" : "them");
 }
 
-/// Refuses rows to which the motion leaps, and from which it leaps back; notes leaps after which it stays.
+/// Refuses rows to which the motion leaps, and from which it leaps back; notes leaps after which it stays,
+/// slow before and after.
 void MotionReader::judge_leaps() {
   const auto usual = is_recording() ? usual_step() : std::nullopt;
   if (!usual) return;
   std::size_t worst = 0, leaps = 0;
   for (std::size_t i = 1; i < rows(); ++i) {
-    if (step(i) <= kUsualSteps * *usual) continue;
+    if (!is_leap(i, *usual)) continue;
     if (const auto back = row_of_return(i, *usual)) refuse_rows(i, *back, *usual);
-    if (!is_lone_leap(i, *usual)) continue;
+    if (step(i) <= kUsualSteps * std::max(step_or_none(i - 1), step_or_none(i + 1))) continue;
     ++leaps;
     if (worst == 0 || step(i) > step(worst)) worst = i;
   }

@@ -43,9 +43,9 @@ struct MotionRows {
 /// Reads a motion. Orientation is in columns qw, qx, qy and qz (unit quaternion), pressed buttons in column
 /// buttons (bits). Throws `Error` with file and line for a bad row, times that do not increase, a time
 /// between rows that is longer than `gap` (by default ten times the usual one), one row or more, of at most
-/// half a second, far away from those around, a speed above 10 m/s, or times that look like milliseconds read
-/// as seconds. A file of fewer than 20 rows is taken for corners of a path: its times may be any, and its
-/// steps as long as that speed permits.
+/// half a second, farther from those around than a hand accelerates, a speed above 10 m/s, or times that look
+/// like milliseconds read as seconds. A file of fewer than 20 rows is taken for corners of a path: its times
+/// may be any, and its steps as long as that speed permits.
 MotionRows read_motion_rows(const TrajectorySettings& settings);
 
 }  // namespace palpate

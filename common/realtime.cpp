@@ -40,4 +40,13 @@ std::string give_role(pthread_t thread, ThreadRole role) {
       row.name, std::strerror(refused));
 }
 
+std::string give_roles(std::initializer_list<std::pair<pthread_t, ThreadRole>> threads) {
+  std::string first;
+  for (const auto& [thread, role] : threads) {
+    const std::string refused = give_role(thread, role);
+    if (first.empty()) first = refused;
+  }
+  return first;
+}
+
 }  // namespace palpate

@@ -1,7 +1,9 @@
 #pragma once
 #include <array>
+#include <initializer_list>
 #include <pthread.h>
 #include <string>
+#include <utility>
 
 namespace palpate {
 
@@ -42,5 +44,7 @@ std::string lock_memory();
 std::string take_role(ThreadRole role, const char* name = nullptr);
 /// Gives another thread, of a role with real-time priority, the same.
 std::string give_role(pthread_t thread, ThreadRole role);
+/// Gives several the same. Returns an empty text if each got it, or the sentence of the first that did not.
+std::string give_roles(std::initializer_list<std::pair<pthread_t, ThreadRole>> threads);
 
 }  // namespace palpate

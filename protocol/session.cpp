@@ -197,36 +197,56 @@ ServerSessions::Outcome ServerSessions::challenge(const Hello& hello, const Endp
       .answer = {{Header{}, Challenge{hello.nonce, hello.attempt, cookies_.make(hello.nonce, from, now)}}}};
 }
 
-/// A known client hears its Welcome again, and is not kept by that: only tool states keep a tool. Where none
-/// is taken any more, numbers that are not its own shut them out: the session ends, and a new one begins.
+/// True if a client speaks and none of its states is taken any more, as numbers that are not its own shut
+/// them out. With keys a captured Hello, sent again while its client only stalls, does not count. Without
+/// keys nothing tells one end from another, and a wild attempt would keep those of the client from counting.
+bool ServerSessions::is_shut_out(const Member& member, const Hello& hello, Time now) const noexcept {
+  const bool said_now = keys_.empty() || hello.attempt > member.attempt;
+  return said_now && member.window.highest() > 0 && now - member.last_heard >= kUnheard;
+}
+
+/// Adds a member behind those that there are.
+ServerSessions::Member& ServerSessions::join(const Hello& hello, const Key& shared, const Endpoint& from,
+                                             std::uint8_t tool, Time now, const Fresh& fresh) {
+  return members_.emplace_back(
+      Member{.session = number_like(fresh.session),
+             .key = shared.number,
+             .nonce = hello.nonce,
+             .server_nonce = fresh.nonce,
+             .attempt = hello.attempt,
+             .endpoint = from,  // the cookie was sent there
+             .reached = from,
+             .tool = tool,
+             .last_heard = now,
+             .keys = {direction_key(shared, Direction::kToServer, hello.nonce, fresh.nonce),
+                      direction_key(shared, Direction::kToClient, hello.nonce, fresh.nonce)}});
+}
+
+/// A known client hears its Welcome again, and is not kept by that: only tool states keep a tool. One that is
+/// shut out gets another session at once, so that nobody takes its tool in between.
 ServerSessions::Outcome ServerSessions::admit(const Hello& hello, const Key& shared, const Endpoint& from,
                                               Time now, const Fresh& fresh) {
-  auto member = std::ranges::find_if(members_, [&](const Member& m) {
+  const auto known = std::ranges::find_if(members_, [&](const Member& m) {
     return m.nonce == hello.nonce && m.key == shared.number && (m.endpoint == from || !keys_.empty());
   });
-  if (member != members_.end() && member->window.highest() > 0 && now - member->last_heard >= kUnheard) {
-    depart(member);
-    Outcome outcome = challenge(hello, from, now);
+  Outcome outcome;
+  Member* member = known == members_.end() ? nullptr : &*known;
+  if (member != nullptr && is_shut_out(*member, hello, now)) {
+    depart(known);
     outcome.departed = &departed_;
-    return outcome;
-  }
-  if (member == members_.end()) {
+    member = &join(hello, shared, from, departed_.tool, now, fresh);
+  } else if (member == nullptr) {
     const auto tool = free_tool();
     if (!tool) return {.answer = {{Header{}, Refuse{hello.nonce, hello.attempt, RefuseReason::kNoFreeTool}}}};
-    member = members_.insert(
-        member, {.session = number_like(fresh.session),
-                 .key = shared.number,
-                 .nonce = hello.nonce,
-                 .server_nonce = fresh.nonce,
-                 .tool = *tool,
-                 .last_heard = now,
-                 .keys = {direction_key(shared, Direction::kToServer, hello.nonce, fresh.nonce),
-                          direction_key(shared, Direction::kToClient, hello.nonce, fresh.nonce)}});
+    member = &join(hello, shared, from, *tool, now, fresh);
+  } else if (hello.attempt > member->attempt) {  // else it may have been captured
+    member->attempt = hello.attempt;
+    member->endpoint = member->reached = from;
   }
-  member->endpoint = member->reached = from;  // the cookie was sent there
-  return {.answer = {{Header{member->session, ++member->sent},
-                      Welcome{hello.nonce, hello.attempt, member->server_nonce, member->tool, rate_hz_,
-                              radii_[member->tool], scene_}}}};
+  outcome.answer = {Header{member->session, ++member->sent},
+                    Welcome{hello.nonce, hello.attempt, member->server_nonce, member->tool, rate_hz_,
+                            radii_[member->tool], scene_}};
+  return outcome;
 }
 
 /// Without a key the answer is that the session is unknown here, with fewer bytes than the client sent.

@@ -107,8 +107,9 @@ class ServerSessions {
     std::uint64_t session = 0, sent = 0;
     std::uint8_t key = 0;  ///< the number of the one that it joined with; 0: none
     Nonce nonce{}, server_nonce{};
-    Endpoint endpoint{};      ///< where answers go
-    Endpoint reached{};       ///< that which last proved to receive what is sent there
+    std::uint64_t attempt = 0;  ///< of the newest Hello that had a valid cookie
+    Endpoint endpoint{};        ///< where answers go
+    Endpoint reached{};         ///< that which last proved to receive what is sent there
     std::uint64_t probe = 0;  ///< number of the first sample sent to `endpoint` since it became that; 0: none
     std::uint64_t newest_sent = 0;  ///< number of the newest sample sent to the client
     std::uint8_t tool = 0;
@@ -167,8 +168,9 @@ class ServerSessions {
   const std::vector<Member>& members() const noexcept { return members_; }
 
   static constexpr Time kTimeout = std::chrono::milliseconds(800);  ///< without a ToolState (STATES.md)
-  /// Time without a ToolState after which a Hello ends the session of its client, who speaks, but is not
-  /// heard. Longer than the 350 ms after which a client that waits for its first tick sends states.
+  /// Time without a ToolState after which a new Hello ends the session of its client, who speaks, but is not
+  /// heard, and begins another. Longer than the 350 ms after which a client that waits for its first tick
+  /// sends states.
   static constexpr Time kUnheard = std::chrono::milliseconds(400);
 
  private:
@@ -178,6 +180,9 @@ class ServerSessions {
   void depart(std::vector<Member>::iterator member) noexcept;
   void spend_cookies() noexcept;
   Outcome admit(const Hello& hello, const Key& shared, const Endpoint& from, Time now, const Fresh& fresh);
+  bool is_shut_out(const Member& member, const Hello& hello, Time now) const noexcept;
+  Member& join(const Hello& hello, const Key& shared, const Endpoint& from, std::uint8_t tool, Time now,
+               const Fresh& fresh);
   Outcome unknown(const Datagram& datagram, LinkStats& stats) const;
   const Key* key_of(const Datagram& datagram) const noexcept;
   std::uint64_t number_like(std::uint64_t session) const noexcept;

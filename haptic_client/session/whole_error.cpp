@@ -22,9 +22,8 @@ std::string how_of(const DiscretisationError& error) {
     case ErrorSource::kUnknown:
       return "unknown: nobody has measured it; `sim_server study SCENE --out DIR` does";
     case ErrorSource::kEstimated:
-      return "estimated by elements to a radius of the tool where it pressed; `sim_server study SCENE --out "
-             "DIR` "
-             "measures it";
+      return "estimated, by elements to a radius of the tool or by presses on linear and quadratic ones; "
+             "`sim_server study SCENE --out DIR` measures it";
     case ErrorSource::kMeasured:
       return "measured by a study of this scene, within a radius of the tool of where it pressed";
     case ErrorSource::kNone:

@@ -293,8 +293,8 @@ std::jthread start_viewing(LiveView* view) {
 }
 
 /// Simulation, network, recording and page, each in a thread of its own, until `watching`, in this one, is
-/// over or throws. Returns what it returned. Notes in `real_time` whether the simulation has the priority of
-/// its role.
+/// over or throws. Returns what it returned. Notes in `real_time` whether network and simulation have the
+/// priority of their roles.
 template <class Watching>
 auto serve_until(SimLoop& loop, NetLink& link, protocol::Recorder* recorder, LiveView* view, bool& real_time,
                  const Watching& watching) {
@@ -305,8 +305,8 @@ auto serve_until(SimLoop& loop, NetLink& link, protocol::Recorder* recorder, Liv
   });
   const std::jthread viewing = start_viewing(view);
   std::jthread sim([&](const std::stop_token& stop) { loop.run(stop); });
-  give_role(net.native_handle(), ThreadRole::kNetwork);  // refused as the next is, or not
-  const std::string refused = give_role(sim.native_handle(), ThreadRole::kSimulation);
+  const std::string refused = give_roles(
+      {{net.native_handle(), ThreadRole::kNetwork}, {sim.native_handle(), ThreadRole::kSimulation}});
   real_time = refused.empty();
   warn_if_refused(refused);
   warn_if_refused(lock_memory());  // after the threads, whose stacks a small limit would not hold

@@ -78,11 +78,14 @@ void ToolContact::change_surface(std::span<const Vec3> rest, const Surface& surf
                                  std::vector<Triangle> touchable,
                                  const std::function<bool(int)>& on_surface) {
   if (grip_) grip_->change_surface(touchable, on_surface);
-  const std::span<const int> nodes = finder_.vertices();
-  const auto is_gone = [&](const Triangle& t) {
-    return std::ranges::find(touchable, Triangle{nodes[t[0]], nodes[t[1]], nodes[t[2]]}) == touchable.end();
-  };
-  if (holds()) std::erase_if(patch_.triangles, is_gone);  // nothing gathers them again
+  if (holds()) {  // nothing gathers its patch again
+    const std::span<const int> nodes = finder_.vertices();
+    std::vector<Triangle> sorted = touchable;
+    std::ranges::sort(sorted);
+    std::erase_if(patch_.triangles, [&](const Triangle& t) {
+      return !std::ranges::binary_search(sorted, Triangle{nodes[t[0]], nodes[t[1]], nodes[t[2]]});
+    });
+  }
   finder_.change_surface(rest, touchable.empty() ? touchable : surface.triangles, touchable);
   filled_.clear();
   predictor_.changes.clear();

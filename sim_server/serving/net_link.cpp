@@ -57,8 +57,9 @@ void NetLink::on_datagram(std::span<const std::byte> bytes, const Endpoint& from
   const auto outcome = sessions_.receive(datagram, from, t, fresh_for(datagram), stats_);
   // Before any answer to it, as a reader of the capture expects.
   record(t, from, Direction::kIn, bytes, stats_.received > received && !is_to_a_stranger(outcome));
-  // A new member stands at the end.
-  if (sessions_.members().size() > before) {
+  // A new member stands at the end; it may have come in the place of one.
+  const std::size_t departed = outcome.departed != nullptr ? 1 : 0;
+  if (sessions_.members().size() + departed > before) {
     const std::uint8_t tool = sessions_.members().back().tool;
     ++tools[tool].so_far;
     requested_[tool] = socket_.requested();

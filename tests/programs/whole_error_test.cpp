@@ -85,7 +85,8 @@ TEST_CASE("whole error: estimated, then measured by a study, with the extrapolat
   const double hand = pressed.error_in_trace("error_n");
   CHECK(rendered["hand_percent"].get<double>() == Approx(hand));
   CHECK(rendered["total_percent"].get<double>() == Approx(189 + hand));
-  CHECK_THAT(rendered["how"]["mesh"].get<std::string>(), Catch::StartsWith("estimated"));
+  CHECK_THAT(rendered["how"]["mesh"].get<std::string>(),
+             Catch::StartsWith("estimated, by elements to a radius of the tool or by presses"));
   CHECK_THAT(rendered["how"]["motion"].get<std::string>(), Catch::StartsWith("none"));
   CHECK_THAT(pressed.said, Catch::Contains("mesh              189   estimated"));
 

@@ -2,6 +2,7 @@
 // or closed forms.
 #include "common/motion_file.h"
 
+#include <array>
 #include <cmath>
 #include <fmt/core.h>
 #include <functional>
@@ -145,6 +146,30 @@ TEST_CASE("rows that leap away and back within half a second are refused by thei
   // A fast motion of several rows there and back is one.
   const auto fast = [](int k) { return Vec3(0, 0, 0.02 * std::min(k + 1, 9 - k)); };
   CHECK(read_with(31, 9, fast).warnings.empty());
+}
+
+TEST_CASE(
+    "a quick press out of noise is a motion, however many usual steps it is long, and a leap no hand makes "
+    "is not") {
+  // 30 Hz, at rest for 10 s with noise of 20 um, four rows away by `press` (m), and at rest again.
+  const auto read_with = [](const std::array<double, 4>& press) {
+    constexpr double kNoise = 2e-5;
+    std::string rows = "t_s,x_m,y_m,z_m\n";
+    for (int i = 0; i < 400; ++i) {
+      const double away = i >= 300 && i < 304 ? press[static_cast<std::size_t>(i) - 300] : 0;
+      rows += fmt::format("{},0,{},{}\n", i / 30.0, kNoise * std::sin(1.7 * i * i) - away, kNoise * (i % 3));
+    }
+    return read_text(rows);
+  };
+  CHECK(read_with({0.003, 0.005, 0.005, 0.003}).warnings.empty());  // 90 mm/s
+  CHECK(read_with({0.005, 0.005, 0.005, 0.005}).warnings.empty());
+  // One row beside the others by 22 mm is 2 * 22 mm * (30 Hz)^2 = 39.6 m/s^2, by 22.5 mm 40.5 m/s^2.
+  CHECK_NOTHROW(read_with({0, 0.022, 0, 0}));
+  CHECK_THROWS_WITH(read_with({0, 0.0225, 0, 0}), Contains("row 302 lies 22.4"));
+  CHECK_THROWS_WITH(read_with({0.05, 0.05, 0.05, 0.05}), Contains("rows 301 to 304 lie "));
+  // Rows at 1 kHz with 0.05 um of a step: 0.9 mm for one of them is noise, though 1800 m/s^2.
+  const std::string still = Recorded{.length = 200}.text(500, {0, 0, 0.9 * 0.2});
+  CHECK_NOTHROW(read_text(still));
 }
 
 TEST_CASE("millimetres read as metres are faster than a hand, and the remedies work") {

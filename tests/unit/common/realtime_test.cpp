@@ -1,9 +1,11 @@
 #include "common/realtime.h"
 
 #include <algorithm>
+#include <optional>
 #include <sched.h>
 #include <string_view>
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
 
@@ -34,6 +36,36 @@ Scheduled scheduled_as(ThreadRole role) {
   return scheduled;
 }
 
+void waits(const std::stop_token& stop) {
+  while (!stop.stop_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+/// Returns what `give_roles` says of two threads in a program that may give no real-time priority; nothing
+/// where this program cannot give up its right to.
+std::optional<std::string> told_without_rights(ThreadRole first, ThreadRole second) {
+  std::array<int, 2> ends{};
+  REQUIRE(pipe(ends.data()) == 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    const rlimit none{0, 0};
+    const bool limited =
+        setrlimit(RLIMIT_RTPRIO, &none) == 0 && (geteuid() != 0 || setresuid(65534, 65534, 65534) == 0);
+    std::string said = limited ? "told:" : "";
+    if (limited) {
+      std::jthread one(waits), other(waits);
+      said += give_roles({{one.native_handle(), first}, {other.native_handle(), second}});
+    }
+    _exit(write(ends[1], said.data(), said.size()) < 0 ? 1 : 0);
+  }
+  close(ends[1]);
+  std::string said(500, 0);
+  said.resize(static_cast<std::size_t>(std::max<ssize_t>(0, read(ends[0], said.data(), said.size()))));
+  close(ends[0]);
+  waitpid(child, nullptr, 0);
+  if (!said.starts_with("told:")) return {};
+  return said.substr(5);
+}
+
 }  // namespace
 
 TEST_CASE("threads: haptic above network above simulation above all others, the page below all") {
@@ -47,6 +79,20 @@ TEST_CASE("threads: haptic above network above simulation above all others, the 
     CHECK(std::string_view(row.name).size() <= 15);
   }
   CHECK(kThreads.back().nice > row_of(ThreadRole::kRecording).nice);
+}
+
+TEST_CASE("threads: of two roles the first that is refused is told, though the other is granted") {
+  const auto told = told_without_rights(ThreadRole::kNetwork, ThreadRole::kHelp);
+  if (!told) {
+    WARN("this program cannot give up its right to real-time priority");
+    return;
+  }
+  CHECK_THAT(*told, Catch::Contains("for the palpate-net thread"));
+  CHECK_THAT(*told_without_rights(ThreadRole::kHelp, ThreadRole::kSimulation),
+             Catch::Contains("for the palpate-sim thread"));
+  CHECK_THAT(*told_without_rights(ThreadRole::kNetwork, ThreadRole::kSimulation),
+             Catch::Contains("for the palpate-net thread"));
+  CHECK(told_without_rights(ThreadRole::kHelp, ThreadRole::kHelp) == "");
 }
 
 TEST_CASE("threads: each gets the priority of its role, or a sentence says that it did not") {

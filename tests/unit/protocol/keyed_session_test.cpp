@@ -359,6 +359,77 @@ TEST_CASE("with a key a captured Hello takes no tool again after a Bye, or once 
   }
 }
 
+TEST_CASE("with a key a captured Hello ends no session whose client stalls, one that its client says does") {
+  Network n;
+  REQUIRE(n.shake_hands());
+  const std::vector<Bytes> hellos = n.up;
+  REQUIRE(n.to_server(n.state()));
+  const std::uint64_t session = n.server.holder(0)->session;
+  n.now += 600ms;
+  for (const Bytes& hello : hellos) n.to_server(hello);
+  REQUIRE(n.server.holder(0) != nullptr);
+  CHECK(n.server.holder(0)->session == session);
+  REQUIRE(n.to_server(n.state()));  // its client goes on where it was
+  n.now += 600ms;
+  REQUIRE(n.shake_hands());
+  REQUIRE(n.server.members().size() == 1);
+  const std::uint64_t next = n.server.holder(0)->session;
+  CHECK(next != session);
+  n.number = 0;
+  CHECK(n.to_server(n.state()));
+  CHECK(n.to_client(n.sample()));
+  // What ended that session ends no other: its attempt is known, and its cookie spent.
+  n.now += 600ms;
+  for (const Bytes& bytes : std::vector(n.up)) n.to_server(bytes);
+  CHECK(n.server.holder(0)->session == next);
+}
+
+TEST_CASE("with a key a second client does not get the tool of one that is shut out, at any moment") {
+  Network n;
+  REQUIRE(n.shake_hands());
+  REQUIRE(n.to_server(n.state()));
+  ClientSession waiting(Nonce{43}, kKey);
+  LinkStats stats;
+  const auto ask = [&] {
+    while (const auto hello = waiting.poll(n.now)) {
+      Bytes bytes(kMaxDatagram);
+      bytes.resize(waiting.write(*hello, bytes));
+      Datagram datagram;
+      REQUIRE(decode_fields(bytes, datagram) == Verdict::kAccepted);
+      const auto outcome = n.server.receive(datagram, kStranger, n.now, {900, {900, 1}}, n.server_stats);
+      REQUIRE(outcome.answer);
+      Bytes answer(kMaxDatagram);
+      answer.resize(seal(answer, encode(outcome.answer->first, outcome.answer->second, answer), outcome.key));
+      REQUIRE(decode_fields(answer, datagram) == Verdict::kAccepted);
+      waiting.receive(datagram, n.now, stats);
+    }
+  };
+  int sessions = 0;
+  for (std::uint64_t last = 0; n.now < 100s + 799ms; n.now += 5ms) {  // no state arrives
+    ask();
+    while (const auto hello = n.client.poll(n.now)) {
+      n.to_server(n.from_client(*hello));
+      ask();
+    }
+    REQUIRE(n.server.holder(0) != nullptr);
+    REQUIRE(n.server.holder(0)->nonce == Nonce{42});
+    if (std::exchange(last, n.server.holder(0)->session) != n.server.holder(0)->session) ++sessions;
+  }
+  CHECK(sessions == 2);
+  CHECK_FALSE(waiting.welcomed());
+  CHECK(waiting.refused() == RefuseReason::kNoFreeTool);
+}
+
+TEST_CASE("with a key a captured Hello does not lead a session back to the address it was said from") {
+  const Endpoint remote{.address = {10, 0, 0, 3}, .port = 1001};
+  Network n;
+  REQUIRE(n.shake_hands());
+  REQUIRE(n.to_server(n.state()));
+  REQUIRE(n.to_server(n.state(), remote));
+  for (const Bytes& bytes : std::vector(n.up)) n.to_server(bytes, kClient);
+  CHECK(n.server.holder(0)->endpoint == remote);
+}
+
 TEST_CASE("without a key those who leave keep nobody from joining") {
   ServerSessions server(30, {0.005, 0.005}, {7});
   LinkStats stats;

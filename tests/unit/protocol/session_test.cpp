@@ -133,12 +133,44 @@ TEST_CASE(
   const auto outcome = pair.server.receive({{}, again}, kClient, pair.now, {79}, pair.server_stats);
   REQUIRE(outcome.departed != nullptr);
   CHECK(outcome.departed->session == 77);
-  CHECK(std::holds_alternative<Challenge>(outcome.answer->second));
-  CHECK(pair.server.members().empty());
+  CHECK(std::holds_alternative<Welcome>(outcome.answer->second));
+  REQUIRE(pair.server.members().size() == 1);
+  CHECK(pair.server.holder(0)->session == 79);
+  // The Welcome is lost: the next is of the same session.
   pair.now += 300ms;
   pair.shake_hands(80);
-  CHECK(pair.server.holder(0)->session == 80);
+  CHECK(pair.server.holder(0)->session == 79);
   CHECK(pair.send_tool(4).tool_state != nullptr);
+}
+
+TEST_CASE("without a key a Hello of a wild attempt does not keep those of its client from counting") {
+  Pair pair;
+  pair.shake_hands();
+  REQUIRE(pair.send_tool(1).tool_state != nullptr);
+  const auto say = [&](std::uint64_t attempt, std::uint64_t fresh_id) {
+    Hello hello{{42}, {}, attempt};
+    const auto challenge = pair.server.receive({{}, hello}, kClient, pair.now, {}, pair.server_stats);
+    hello.cookie = std::get<Challenge>(challenge.answer->second).cookie;
+    return pair.server.receive({{}, hello}, kClient, pair.now, {fresh_id}, pair.server_stats).departed;
+  };
+  CHECK(say(std::uint64_t{1} << 63, 78) == nullptr);
+  pair.now += 400ms;
+  CHECK(say(3, 79) != nullptr);
+  CHECK(pair.server.holder(0)->session == 79);
+}
+
+TEST_CASE("a client that is shut out keeps its tool, also where one before it is free") {
+  ServerSessions server(30, {0.005, 0.004});
+  LinkStats stats;
+  greet_as(1, server, kOther, 10s, 71, stats);
+  REQUIRE(std::get<Welcome>(greet_as(2, server, kClient, 10s, 72, stats).answer->second).tool == 1);
+  server.receive({{72, 1}, ToolState{.tool = 1, .tick = 1}}, kClient, 10s, {}, stats);
+  server.receive({{71, 1}, Bye{}}, kOther, 10s, {}, stats);
+  const auto outcome = greet_as(2, server, kClient, 10s + 400ms, 73, stats);
+  REQUIRE(outcome.departed != nullptr);
+  CHECK(outcome.departed->session == 72);
+  CHECK(std::get<Welcome>(outcome.answer->second).tool == 1);
+  CHECK(server.holder(1)->session == 73);
 }
 
 TEST_CASE("a second client is refused with the reason, and let in when the first is gone for 800 ms") {
