@@ -90,9 +90,8 @@ TestedLink tested_link(const Json& tool, double seconds) {
 void print_round_trip(const Json& trip, double seconds) {
   const Json& ms = trip["ms"];
   fmt::print(
-      "  round trip  {:.4g} ms (p50), {:.4g} (max); jitter {:.3g} ms; {} of {} lost ({:.2f} %), {} "
-      "reordered; "
-      "these took {:.0f} kbit/s up beside the session\n",
+      "  round trip  {:.4g} ms (p50), {:.4g} (max); jitter {:.3g} ms; {} of {} lost ({:.2f} %), "
+      "{} reordered; these took {:.0f} kbit/s up beside the session\n",
       ms["p50"].get<double>(), ms["max"].get<double>(), trip["jitter_ms"].get<double>(),
       trip["lost"].get<long>(), trip["sent"].get<long>(),
       percent(trip["lost"].get<double>(), trip["sent"].get<double>()), trip["reordered"].get<long>(),

@@ -41,20 +41,17 @@ constexpr double kBetweenBursts = 3;                  // s: gaps that are rarer 
 constexpr double kFades = 1e3 * to_seconds(kOutage);  // ms: of a sample at which the force fades
 
 const std::string kBursts =
-    "samples stay out in bursts, as on a radio link or behind traffic of others: use a cable, or a network "
-    "of "
-    "its own";
+    "samples stay out in bursts, as on a radio link or behind traffic of others: use a cable, or a "
+    "network of its own";
 const std::string kLoneGap =
     "samples stay out now and then: a step of the server that takes long (its report counts late "
     "deadlines), or a moment of bad radio";
 const std::string kLate =
-    "samples are late without being lost: a long way, a queue on it (end other traffic), or a server that "
-    "steps "
-    "slowly (`sim_server explain SCENE`); a softer scene needs less";
+    "samples are late without being lost: a long way, a queue on it (end other traffic), or a server "
+    "that steps slowly (`sim_server explain SCENE`); a softer scene needs less";
 const std::string kNothingCame =
-    "the server answered and then sent no sample: look whether it still runs and steps (its own output says "
-    "so), "
-    "and let UDP through both ways";
+    "the server answered and then sent no sample: look whether it still runs and steps (its own output "
+    "says so), and let UDP through both ways";
 const std::string kNothingTouched =
     "let the simulated hand press on the organ: give `--client` the file made for this scene";
 const std::string kLarge =

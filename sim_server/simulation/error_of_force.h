@@ -18,10 +18,9 @@ struct StudiedErrors {
 /// is estimated in each step: the larger of what a table says of how fine it is where the tool presses
 /// (`estimated_mesh_error`) and, of linear elements, of the nearest press at set-up in such a direction
 /// (`ElementTrial`), of a tool with the radius of the first. Of tissue that bends (`ThinTissue`), or that is
-/// all but incompressible
-/// (`Material::locks`), the table says nothing: without a press on such it is unknown. That of the time step
-/// is unknown, but where the force follows from the poses of the step alone, so that no step is too long. One
-/// thread.
+/// all but incompressible (`Material::locks`), the table says nothing: without a press on such it is unknown.
+/// That of the time step is unknown, but where the force follows from the poses of the step alone, so that no
+/// step is too long. One thread.
 class ErrorOfForce {
  public:
   /// `studied`: of this scene, pressed with its first tool. `simulation` is read here only. O(vertices x
@@ -51,7 +50,7 @@ class ErrorOfForce {
  private:
   void add_trials(const Scene& scene, const Simulation& simulation);
   std::optional<double> by_table(std::size_t tool, std::span<const VertexLoad> loads) const noexcept;
-  /// What a tool loads: the middle of it at rest, m, and how, N.
+  /// Sum of the loads of a tool, N, and their middle by force, at rest, m.
   struct Load {
     Vec3 middle, force;
   };

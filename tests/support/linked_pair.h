@@ -92,7 +92,7 @@ class LinkedPair {
     const std::size_t size = protocol::encode(header, message, out);
     take_at_client({out.data(), protocol::seal(out, size, greets ? of_hello : member->keys.out)});
   }
-  /// The same, in the name of the client.
+  /// Gives the server a datagram as the client of tool 0 would send it: with its key, of any number.
   void forge_to_server(const protocol::Header& header, const protocol::Message& message) {
     const protocol::ServerSessions::Member* const member = server_.holder(0);
     if (member == nullptr) return;
