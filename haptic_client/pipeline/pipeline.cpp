@@ -246,7 +246,7 @@ bool Pipeline::take(const ForceSample& arrived, const Vec3& p_W, Time now) noexc
   const Sample& newest = estimate_.newest();
   passivity_.sampled(newest.t, workspace_.motion_to_device(newest.p), workspace_.to_device(newest.f),
                      limiter_.max_force());
-  pace_.heard(now - newest.t);
+  pace_.heard(now - newest.t, Time{arrived.step_ns}, now);
   const Time lead = now - newest.t + estimate_.period() / 2;
   lead_ += (std::min(lead, kOutage) - lead_) / (stats_.samples == 0 ? 1 : kLeadFilter);
   ++stats_.samples;

@@ -95,6 +95,9 @@ class Pipeline {
   bool paused() const noexcept { return paused_; }
   const Workspace& workspace() const noexcept { return workspace_; }
 
+  /// Bounds the pages that are requested to what the link leaves for them, pages a second; below 0: no bound.
+  void bound_pages(double pages_hz) noexcept { pace_.bound(pages_hz); }
+
   /// Asks the next tick to clear a latched fault; the force then rises again over a soft start.
   void rearm() noexcept { rearm_requested_ = true; }
 

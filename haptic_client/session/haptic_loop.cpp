@@ -48,6 +48,7 @@ TickResult HapticLoop::tick() noexcept {
   if (fresh) telemetry_.want((sample.flags & protocol::ForceSample::kRequestsTelemetry) != 0);
   std::size_t pages = 0;
   while (pages < pages_.size() && mailboxes_.pages.pop(pages_[pages])) ++pages;
+  pipeline_.bound_pages(mailboxes_.pages_hz.load(std::memory_order_relaxed));
   const TickResult result =
       pipeline_.tick(reading, fresh ? &sample : nullptr, std::span(pages_).first(pages));
   device_.write(result.f_D);

@@ -14,12 +14,14 @@ namespace palpate::client {
 
 /// Between the haptic thread and the network thread. Every pose goes out, so that what travels can be
 /// replayed tick by tick; of the forces only the newest counts. Pages are asked for by the haptic thread,
-/// fewer than there is room for. `bell` rings when a pose waits.
+/// fewer than there is room for, and no more than `pages_hz` a second (below 0: as many as come without a
+/// queue), so that none is requested that the link has no room for. `bell` rings when a pose waits.
 struct HapticMailboxes {
   SpscRing<protocol::ToolState> tool{512};     // haptic -> network
   LatestValue<protocol::ForceSample> force;    // network -> haptic
   SpscRing<protocol::SurfacePage> pages{128};  // network -> haptic
   LatestValue<protocol::Pointer> pointer;      // network -> haptic
+  std::atomic<double> pages_hz{-1};            // network -> haptic
   SpscRing<protocol::Telemetry> telemetry{4};  // haptic -> network
   Doorbell bell;
 };

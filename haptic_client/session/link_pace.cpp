@@ -13,14 +13,13 @@ namespace {
 struct LevelRow {
   const char* name;
   double states_per_step;  // 0: each tick
-  double pages_hz;         // requests of one page; below 0: as `PagePace` allows
+  double pages_hz;         // below 0: as `PagePace` allows
   double telemetry_hz;     // below 0: as often as it is made
   std::uint16_t requests;  // parts of a sample that are asked for
 };
 
 constexpr std::uint16_t kTangentOnly = ToolState::kRequestsTangent | ToolState::kRequestsErrors;
-constexpr std::uint16_t kAllParts =
-    kTangentOnly | ToolState::kRequestsAhead | ToolState::kRequestsSurface | ToolState::kAsksPages;
+constexpr std::uint16_t kAllParts = kTangentOnly | ToolState::kRequestsAhead | ToolState::kRequestsSurface;
 // At 30 steps a second, without a key: packed, 500 ticks a second are 0.2 Mbit/s; sparse, 0.05 Mbit/s.
 constexpr std::array<LevelRow, kLinkLevels> kLevels{{
     {"full", 0, -1, -1, kAllParts},
@@ -77,15 +76,12 @@ bool LinkPace::is_due(Time now, double rate_hz) noexcept {
   return may_happen(std::max(per_step * steps, kFewestStates), sent_, now);
 }
 
-void LinkPace::shrink(ToolState& state) noexcept {
-  const LevelRow& row = row_of(level_);
-  state.flags &= static_cast<std::uint16_t>(~kAllParts | row.requests);
-  if (row.pages_hz < 0 || (state.flags & ToolState::kAsksPages) == 0) return;
-  if (may_happen(row.pages_hz, paged_, Time{state.t_ns})) {
-    std::fill(state.pages.begin() + 1, state.pages.end(), ToolState::kNoPage);
-  } else {
-    state.flags &= static_cast<std::uint16_t>(~ToolState::kAsksPages);
-  }
+void LinkPace::shrink(ToolState& state) const noexcept {
+  state.flags &= static_cast<std::uint16_t>(~kAllParts | row_of(level_).requests);
+}
+
+double LinkPace::pages_hz() const noexcept {
+  return row_of(level_).pages_hz;
 }
 
 bool LinkPace::carries_telemetry(Time now) noexcept {

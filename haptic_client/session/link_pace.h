@@ -38,8 +38,11 @@ class LinkPace {
   bool is_due(Time now, double rate_hz) noexcept;
   /// True if the ticks before it travel in this datagram.
   bool packs_ticks() const noexcept { return level_ != LinkLevel::kSparse; }
-  /// Takes off what the level does not ask for.
-  void shrink(protocol::ToolState& state) noexcept;
+  /// Takes off the parts of a sample that the level does not ask for. Pages pass: `pages_hz` bounds those
+  /// where they are chosen, since a request that is dropped looks like a page that the link lost.
+  void shrink(protocol::ToolState& state) const noexcept;
+  /// Returns how many pages of the surface a second the level leaves room for; below 0: as `PagePace` finds.
+  double pages_hz() const noexcept;
   /// True if a message for the page may leave at `now`.
   bool carries_telemetry(Time now) noexcept;
 
@@ -65,10 +68,10 @@ class LinkPace {
 
   LinkLevel level_ = LinkLevel::kPacked;
   std::array<Time, kLinkLevels> spent_{};
-  Time ticked_{}, sent_{}, paged_{}, told_{};  // newest tick; when the last datagram, page, telemetry left
-  Time settled_{};                             // not judged before: the queue needs time to follow
-  Time raised_{};                              // when the level last went up
-  Time calm_ = kFirstCalm;                     // how long it must be before more is tried
+  Time ticked_{}, sent_{}, told_{};  // newest tick; when the last datagram, telemetry left
+  Time settled_{};                   // not judged before: the queue needs time to follow
+  Time raised_{};                    // when the level last went up
+  Time calm_ = kFirstCalm;           // how long it must be before more is tried
   std::optional<Time> calm_since_, waits_since_;
   int grew_ = 0;       // looks in a row in which the delay did
   RecentLeast least_;  // age

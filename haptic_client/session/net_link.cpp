@@ -76,6 +76,7 @@ void NetLink::pass_on(const protocol::Message& message, Time t) {
     mailboxes_.force.write(*sample);
     figures_.sample(*sample, t);
     if (t.count() >= sample->tool_t_ns) pace_.sample(*sample, t - Time{sample->tool_t_ns}, t);
+    mailboxes_.pages_hz.store(pace_.pages_hz(), std::memory_order_relaxed);
   }
   if (const auto* page = std::get_if<protocol::SurfacePage>(&message)) {
     mailboxes_.pages.push(*page);

@@ -160,3 +160,29 @@ TEST_CASE("bad link: a law that has its model feels no more than the truth, and 
   CHECK(rendered.largest <= kMost * (1 + 1e-9));
   CHECK(rendered.counts.corrupted > 0);
 }
+
+TEST_CASE("bad link: no more pages are requested than the link has room for, and all that lack come after") {
+  SimulatedOperator hand = presser();
+  Pipeline pipeline(std::make_unique<LocalContact>(), {}, {.max_force = kMost, .max_slew = 100});
+  sim::Simulation block(test::block_scene(), test::block_mesh());
+  test::ClosedLoop loop(hand, pipeline, served(block), {.link = {.delay = 0.005}});
+  const auto requested = [&](double pages_hz, double until) {
+    pipeline.bound_pages(pages_hz);
+    int pages = 0;
+    while (loop.seconds() < until) {
+      const protocol::ToolState& tool = loop.tick().tool;
+      if ((tool.flags & protocol::ToolState::kAsksPages) == 0) continue;
+      pages += static_cast<int>(std::ranges::count_if(
+          tool.pages, [](std::uint32_t page) { return page != protocol::ToolState::kNoPage; }));
+    }
+    return pages;
+  };
+  const int first = requested(0, 1);
+  CHECK(first <= 2);  // allowed before anything is known
+  const int few = requested(4, 3);
+  CHECK(few > 0);
+  CHECK(few <= 9);
+  const int rest = requested(-1, kEnd);
+  CHECK(rest > 9);
+  CHECK(pipeline.stats().pages == static_cast<std::uint64_t>(first + few + rest));
+}

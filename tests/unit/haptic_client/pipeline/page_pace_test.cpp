@@ -33,7 +33,7 @@ struct Line {
         return true;
       });
       if (now - sampled >= 32ms) {  // a sample waits as pages do
-        pace.heard(std::max(free - now, Time{}) + delay + both_ways());
+        pace.heard(std::max(free - now, Time{}) + delay + both_ways(), 0s, now);
         sampled = now;
       }
       const std::size_t pages = pace.allowed(now);
@@ -138,4 +138,98 @@ TEST_CASE(
   CHECK(line.pace.rate() < 100);  // as if pages queued
   line.run(24s);
   CHECK(line.pace.rate() == PagePace::kFastest);
+}
+
+// At 256 kbit/s a page takes 29 ms, and samples of 447 bytes leave room for 20 pages a second. Contact that
+// goes on needs a page now and then, and 40 at once where it comes to a new place.
+TEST_CASE("pages: a rate that nothing used does not grow, so that many at once fill no queue of 256 kbit/s") {
+  PagePace pace{};
+  std::deque<std::pair<Time, Time>> on_the_way;  // asked, arrives
+  Time free{}, longest_wait{};
+  int missing = 0, dropped = 0;
+  for (Time now = 1000s; now < 1025s; now += 8ms) {
+    while (!on_the_way.empty() && on_the_way.front().second <= now) {
+      pace.came(now - on_the_way.front().first);
+      on_the_way.pop_front();
+    }
+    if ((now - 1000s) % 32ms == 0ms) {  // a sample waits as pages do
+      free = std::max(free, now);
+      longest_wait = std::max(longest_wait, free - now);
+      free += from_seconds(447 / 32e3);
+      pace.heard(free - now + 20ms, 0s, now);
+    }
+    if ((now - 1000s) % 400ms == 0ms) ++missing;
+    if (now == 1020s) missing += 40;
+    const int pages = std::min(missing, static_cast<int>(pace.allowed(now)));
+    pace.requested(static_cast<std::size_t>(pages));
+    for (int i = 0; i < pages; ++i) {
+      free = std::max(free, now);
+      if (free - now > 200ms) {
+        ++dropped;
+        pace.lost(1);
+        continue;
+      }
+      free += from_seconds(937 / 32e3);
+      on_the_way.emplace_back(now, free + 20ms);
+      --missing;
+    }
+  }
+  CAPTURE(to_seconds(longest_wait), pace.rate());
+  CHECK(dropped == 0);
+  CHECK(longest_wait < 150ms);
+  CHECK(missing < 5);  // 40 came within 5 s
+}
+
+TEST_CASE(
+    "pages: samples that wait take the rate down, though no page comes that waited, long steps do not") {
+  PagePace pace{}, slow_server{};
+  Time now = 1000s;
+  for (int i = 0; i < 250; ++i, now += 8ms) {
+    const Time more = std::max(i - 125, 0) * 2ms;
+    pace.heard(20ms + more, 0s, now), pace.allowed(now);
+    slow_server.heard(20ms + more, more, now), slow_server.allowed(now);
+  }
+  CHECK(pace.rate() == PagePace::kSlowest);
+  CHECK(slow_server.rate() == 30);
+}
+
+TEST_CASE("pages: no more are allowed than the link's level has room for, and what it had stays known") {
+  PagePace pace{};
+  Time now = 1000s;
+  const auto allowed = [&](Time span) {
+    std::size_t pages = 0;
+    for (const Time end = now + span; now < end; now += 8ms) {
+      const std::size_t more = pace.allowed(now);
+      pace.requested(more);
+      for (std::size_t i = 0; i < more; ++i) pace.came(10ms);
+      pages += more;
+    }
+    return pages;
+  };
+  allowed(2s);
+  REQUIRE(pace.rate() == PagePace::kFastest);
+  pace.bound(4);
+  pace.requested(pace.allowed(now));
+  const std::size_t few = allowed(10s);
+  CHECK(few >= 39);
+  CHECK(few <= 41);
+  pace.bound(0);
+  allowed(1s);
+  CHECK(allowed(10s) == 0);
+  pace.bound(-1);
+  CHECK(pace.rate() == PagePace::kFastest);
+  CHECK(allowed(1s) > 900);
+}
+
+// A rate that only the bound held down says nothing of what the link carries beyond it.
+TEST_CASE("pages: a rate that the link's level bounds does not grow meanwhile") {
+  PagePace pace{};
+  pace.bound(4);
+  for (Time now = 1000s; now < 1020s; now += 8ms) {
+    const std::size_t pages = pace.allowed(now);
+    pace.requested(pages);
+    for (std::size_t i = 0; i < pages; ++i) pace.came(10ms);
+  }
+  pace.bound(-1);
+  CHECK(pace.rate() == 30);
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/ages.h"
+#include "haptic_client/pipeline/page_pace.h"
 #include "protocol/earlier_ticks.h"
 #include "protocol/link_simulator.h"
 #include "tests/support/catch.h"
@@ -19,14 +20,22 @@ struct PacedSession {
   Time oldest{};            // sample, once the first second is over
   std::uint64_t faded = 0;  // ticks after it whose newest sample is older than `kOutage`
   std::uint64_t samples = 0, ticks = 0, ticks_heard = 0;
+  std::uint64_t pages = 0;  // that came
   LinkLevel level{};
   std::array<Time, kLinkLevels> spent{};
+};
+
+/// Pages that a hand lacks from `at` on: contact has come to a new place.
+struct Lacking {
+  Time at{};
+  std::uint32_t pages = 0;
 };
 
 /// A hand at 500 Hz and a server of 30 steps a second, in virtual time, over a link each way.
 class PacedPair {
  public:
-  PacedPair(const LinkConditions& up, const LinkConditions& down) : up_(up, 1), down_(down, 2) {}
+  PacedPair(const LinkConditions& up, const LinkConditions& down, std::vector<Lacking> lacking = {})
+      : up_(up, 1), down_(down, 2), lacking_(std::move(lacking)) {}
 
   PacedSession run(Time span) {
     for (Time t = 10s; t < 10s + span; t += 2ms) {
@@ -51,6 +60,7 @@ class PacedPair {
       session_.oldest = std::max(session_.oldest, age);
       session_.faded += age > kOutage ? 1 : 0;
     }
+    ask_pages(state, t);
     pace_.shrink(state);
     if (!pace_.packs_ticks()) waiting_.clear();
     waiting_.push_back(state);
@@ -61,12 +71,50 @@ class PacedPair {
     up_.send({bytes.data(), size}, t);
     waiting_.clear();
   }
+  /// As the pipeline does: a page is asked for again once the patience for it is over.
+  void ask_pages(ToolState& state, Time t) {
+    for (const Lacking& more : lacking_) {
+      if (t == more.at) pages_.resize(pages_.size() + more.pages);
+    }
+    if (t.count() % 8'000'000 != 0) return;
+    page_pace_.bound(pace_.pages_hz());
+    const std::size_t room = std::min(page_pace_.allowed(t), state.pages.size());
+    std::size_t asked = 0;
+    state.pages.fill(ToolState::kNoPage);
+    for (std::size_t i = 0; i < pages_.size() && asked < room; ++i) {
+      AskedPage& page = pages_[i];
+      if (page.came || (page.asked > Time{} && t - page.asked < page_pace_.patience())) continue;
+      page.again = page.asked > Time{};
+      page_pace_.lost(page.again ? 1 : 0);
+      page.asked = t;
+      state.pages[asked++] = static_cast<std::uint32_t>(i);
+    }
+    page_pace_.requested(asked);
+    if (asked > 0) state.flags |= ToolState::kAsksPages;
+  }
+  void serve_pages(const ToolState& state, Time t) {
+    if ((state.flags & ToolState::kAsksPages) == 0) return;
+    for (const std::uint32_t page : state.pages) {
+      if (page == ToolState::kNoPage) continue;
+      std::array<std::byte, kMaxDatagram> bytes{};
+      const std::size_t size =
+          encode({.session = 9, .sequence = ++pages_sent_}, SurfacePage{.page = page}, bytes);
+      down_.send({bytes.data(), size}, t);
+    }
+  }
+  void take_page(const SurfacePage& arrived, Time t) {
+    AskedPage& page = pages_.at(arrived.page);
+    session_.pages += page.came ? 0 : 1;
+    page.came = true;
+    if (!page.again) page_pace_.came(t - page.asked);
+  }
   void serve(Time t) {
     while (const auto bytes = up_.receive(t)) {
       Datagram datagram;
       REQUIRE(decode(*bytes, datagram) == Verdict::kAccepted);
       const auto ticks = ticks_of(datagram);
       session_.ticks_heard += ticks.size();
+      for (const ToolState& state : ticks) serve_pages(state, t);
       came_ += 1;
       highest_ = std::max(highest_, datagram.header.sequence);
       if (ticks.back().tick > answered_) heard_ = ticks.back();
@@ -88,16 +136,30 @@ class PacedPair {
     while (const auto bytes = down_.receive(t)) {
       Datagram datagram;
       REQUIRE(decode(*bytes, datagram) == Verdict::kAccepted);
+      if (const auto* page = std::get_if<SurfacePage>(&datagram.message)) {
+        take_page(*page, t);
+        continue;
+      }
       const auto& sample = std::get<ForceSample>(datagram.message);
       if (sample.number <= newest_.number) continue;
       newest_ = sample;
       ++session_.samples;
       pace_.sample(sample, t - Time{sample.tool_t_ns}, t);
+      page_pace_.heard(t - Time{sample.tool_t_ns}, 0s, t);
     }
   }
 
+  struct AskedPage {
+    Time asked{};
+    bool again = false, came = false;
+  };
+
   LinkSimulator up_, down_;
   LinkPace pace_;
+  std::vector<Lacking> lacking_;
+  std::vector<AskedPage> pages_;
+  PagePace page_pace_;
+  std::uint64_t pages_sent_ = 0;
   std::vector<ToolState> waiting_;
   ForceSample newest_;
   ToolState heard_;
@@ -135,6 +197,21 @@ TEST_CASE("link pace: no force fades at 512 and at 256 kbit/s, and every tick ar
     CHECK(session.samples > 29 * 60);
     CHECK(static_cast<double>(session.ticks_heard) > 0.98 * static_cast<double>(session.ticks));
     CHECK(spent(session, LinkLevel::kLean) + spent(session, LinkLevel::kSparse) == 0s);
+  }
+}
+
+// A hand that rests needs a page now and then, and many where it comes to a new place of the organ.
+TEST_CASE("link pace: no force fades at 256 kbit/s where contact comes to new places, whose pages come") {
+  const LinkConditions line{.delay = 0.01, .bandwidth = 256e3 / 8};
+  for (const Time place : {Time{1500ms}, Time{5200ms}, Time{9300ms}}) {
+    std::vector<Lacking> lacking{{10s, 12}};
+    for (Time at = 10s + place; at < 40s; at += place) lacking.push_back({at, 30});
+    for (Time at = 10s + 200ms; at < 40s; at += 400ms) lacking.push_back({at, 1});
+    const PacedSession session = PacedPair(line, line, lacking).run(30s);
+    CAPTURE(to_seconds(place), to_seconds(session.oldest), session.pages,
+            to_seconds(spent(session, LinkLevel::kPlain)), to_seconds(spent(session, LinkLevel::kPacked)));
+    CHECK(session.faded == 0);
+    CHECK(session.pages > 100);
   }
 }
 
