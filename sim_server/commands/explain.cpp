@@ -15,6 +15,7 @@
 #include "sim_server/models/deformation_models.h"
 #include "sim_server/scene/touchable.h"
 #include "sim_server/scene_file/read_scene.h"
+#include "sim_server/simulation/error_of_force.h"
 #include "sim_server/simulation/setup_times.h"
 #include "sim_server/statics/compliance_tolerance.h"
 
@@ -25,7 +26,9 @@ constexpr double kLongSetUp = 1e4;             // ms: a scene whose variants are
 constexpr double kMostVariant = 2e9;           // bytes of compliance that a variant is built with
 constexpr double kUsualFriction = 0.3;         // as in block_friction.toml
 constexpr double kBytesOfMotion = 9 * 24 + 8;  // of a vertex in explicit steps: nine vectors, a mass
-/// The figures by which a variant is compared. `setup_ms` is without reading the mesh, which all share.
+constexpr std::string_view kPressing = "pressing on both kinds of elements";  // a stage of set-up
+/// The figures by which a variant is compared. `setup_ms` is without what all share: reading the mesh, and
+/// presses on both kinds of elements.
 struct Cost {
   double bytes = 0, setup_ms = 0, step_ms = 0;
 };
@@ -42,7 +45,8 @@ double ms(Time t) {
 }
 
 Cost cost_of(const Simulation& simulation, const SetupTimes& times, const StepTimes& steps) {
-  Cost cost{0, ms(times.total() - times.of(name_of(Stage::kMesh))), steps.contact_ns.quantile(0.5) / 1e6};
+  Cost cost{0, ms(times.total() - times.of(name_of(Stage::kMesh)) - times.of(kPressing)),
+            steps.contact_ns.quantile(0.5) / 1e6};
   for (const MemoryPart& part : simulation.memory()) cost.bytes += static_cast<double>(part.bytes);
   return cost;
 }
@@ -138,11 +142,24 @@ BuiltPart& row_of(std::vector<BuiltPart>& rows, const std::string& name, const S
   return rows.emplace_back(BuiltPart{name, detail_of(scene, simulation, name), where_of(scene, name)});
 }
 
+/// The row of the material, which keeps what tells the mesh's share of the error.
+BuiltPart material_part(const Scene& scene, const ErrorOfForce& errors, double setup_ms) {
+  BuiltPart row{"material", "not used", scene.material_where};
+  if (!model_of(scene.deformation).deforms()) return row;
+  row.detail = fmt::format(
+      "kept: the error of the force by the mesh, {} presses on \"p1\" and \"p2\"{}", errors.presses(),
+      scene.material->locks() ? "; \"p1\" locks at this poisson_ratio: take \"p2\"" : "");
+  row.bytes = errors.bytes();
+  row.setup_ms = setup_ms;
+  return row;
+}
+
 /// Parts in the order in which they are set up, then those that take no time of their own.
 std::vector<BuiltPart> built_parts(const Scene& scene, const Simulation& simulation,
-                                   const SetupTimes& times) {
+                                   const ErrorOfForce& errors, const SetupTimes& times) {
   std::vector<BuiltPart> rows;
   for (const SetupTimes::Stage& stage : times.stages()) {
+    if (stage.name == kPressing) continue;
     row_of(rows, part_of(stage.name, scene.tools.size()), scene, simulation).setup_ms += ms(stage.took);
   }
   for (const MemoryPart& part : simulation.memory()) {
@@ -155,13 +172,7 @@ std::vector<BuiltPart> built_parts(const Scene& scene, const Simulation& simulat
   const std::string wall =
       fmt::format("nothing kept; under a tool each vertex is a wall of {:g} N/m", held_stiffness(scene));
   for (const FixedRegion& region : scene.fixed) rows.push_back({"fixed", wall, region.where});
-  if (scene.material)
-    rows.push_back({"material",
-                    !model_of(scene.deformation).deforms() ? "not used"
-                    : scene.material->locks()
-                        ? "nothing kept; \"p1\" locks at this poisson_ratio: take \"p2\""
-                        : "nothing kept",
-                    scene.material_where});
+  if (scene.material) rows.push_back(material_part(scene, errors, ms(times.of(kPressing))));
   return rows;
 }
 
@@ -341,9 +352,12 @@ Explanation explain(const Scene& scene, const Progress& progress, int steps, con
   SetupTimes times(progress);
   Own own{scene, progress, steps, cache, condensed, Simulation(scene, std::ref(times), cache, condensed),
           {},    {}};
+  times(kPressing, 0);
+  const ErrorOfForce errors(scene, own.simulation);
+  times(kPressing, 1);
   own.sites = find_presses(scene, own.simulation);
   Explanation explanation{.scene = scene,
-                          .built = built_parts(scene, own.simulation, times),
+                          .built = built_parts(scene, own.simulation, errors, times),
                           .omitted = {},
                           .steps = time_steps(scene, own.simulation, own.sites, steps, progress),
                           .state_hash = own.simulation.state_hash(),

@@ -122,4 +122,11 @@ std::optional<double> ErrorOfForce::by_trial(const Load& load, bool thin) const 
   return nearest != nullptr ? std::optional(nearest->percent) : std::nullopt;
 }
 
+std::size_t ErrorOfForce::bytes() const noexcept {
+  std::size_t sum =
+      rest_.size() * sizeof(Vec3) + trials_.size() * sizeof(Trial) + (thin_ ? thin_->bytes() : 0);
+  for (const OfTool& tool : tools_) sum += sizeof(OfTool) + tool.mesh.bytes();
+  return sum;
+}
+
 }  // namespace palpate::sim

@@ -44,6 +44,9 @@ class ErrorOfForce {
   std::optional<double> elements_per_radius(std::size_t tool) const noexcept {
     return tools_[tool].mesh.elements_per_radius();
   }
+  /// Number of places where set-up has pressed on both kinds of elements.
+  std::size_t presses() const noexcept { return trials_.size(); }
+  std::size_t bytes() const noexcept;
   /// Returns the mean errors over all steps so far, each by the size of its force.
   DiscretisationErrors of_all_steps(std::size_t tool) const noexcept { return tools_[tool].steps.mean(); }
 

@@ -27,6 +27,7 @@ class MeshResolution {
   void add(std::span<const VertexLoad> loads) noexcept;
   /// Mean over all loads so far; nothing before the first.
   std::optional<double> elements_per_radius() const noexcept;
+  std::size_t bytes() const noexcept { return fineness_.size() * sizeof(double); }
 
  private:
   void set_inside(const Surface& surface, const TetMesh& mesh, double radius);

@@ -130,4 +130,10 @@ bool ThinTissue::bears(std::span<const VertexLoad> loads) const noexcept {
   return all > 0 && 2 * thin >= all;
 }
 
+std::size_t ThinTissue::bytes() const noexcept {
+  std::size_t sum = thin_.size() * sizeof(thin_[0]);
+  for (const std::vector<Vec3>& normals : thin_) sum += normals.size() * sizeof(Vec3);
+  return sum;
+}
+
 }  // namespace palpate::sim

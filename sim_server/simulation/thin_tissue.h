@@ -22,6 +22,7 @@ class ThinTissue {
   /// True if at least half of what a tool loads the surface with presses such tissue through its thickness.
   /// O(loads); does not allocate.
   bool bears(std::span<const VertexLoad> loads) const noexcept;
+  std::size_t bytes() const noexcept;
 
  private:
   /// Normals at rest, by vertices of the surface, of the faces there whose other side is so near.

@@ -7,6 +7,8 @@
 
 #include "sim_server/mesh/shapes.h"
 #include "sim_server/scene_file/read_scene.h"
+#include "sim_server/simulation/element_trial.h"
+#include "sim_server/simulation/error_of_force.h"
 #include "tests/support/catch.h"
 #include "tests/support/solids.h"
 #include "tests/support/temporary_folder.h"
@@ -149,6 +151,20 @@ TEST_CASE("explain: what a quasi-static scene with a reach builds, by line, and 
   CHECK_FALSE(entire->setup_ms.has_value());
 }
 
+TEST_CASE("explain: presses on both kinds of elements count to the material's set-up and memory") {
+  const std::string tissue = kMesh + kFixed + kMaterial, more = model("quasi_static") + kTool + kReach;
+  const Bench linear(tissue + more), quadratic(tissue + "element = \"p2\"\n" + more);
+  const auto presses = try_elements(linear.explanation.scene, shelf()).size();
+  REQUIRE(presses > 1);
+  const BuiltPart& row = linear.built("material");
+  CHECK(row.detail.find(fmt::format(", {} presses on", presses)) != std::string::npos);
+  CHECK(quadratic.built("material").detail.find(", 0 presses on") != std::string::npos);
+  // Of each surface vertex at least: where it is at rest, how fine the mesh is, a list of thin sides.
+  const double vertices = static_cast<double>(boundary_surface(shelf()).vertices.size());
+  CHECK(static_cast<double>(row.bytes) >= (24 + 8 + 24) * vertices);
+  CHECK(row.setup_ms > 0);
+}
+
 TEST_CASE("explain: without a reach none is left out, elasticity is not left out where it is built") {
   const Bench bench(kMesh + kFixed + kMaterial + model("quasi_static") + kTool);
   const double all = reachable_free(0);
@@ -166,7 +182,9 @@ TEST_CASE("explain: what a scene in motion builds: tensors with its sub-steps, a
   CHECK(bench.built("tensors").bytes > 0);
   CHECK(bench.built("tensors").detail.find("144 vertices, ") == 0);  // of 9 x 4 x 5, without 9 x 4
   CHECK(bench.built("tensors").detail.find(" sub-steps of ") != std::string::npos);
-  CHECK(bench.built("material").detail == "nothing kept");
+  CHECK(bench.built("material").detail ==
+        fmt::format("kept: the error of the force by the mesh, {} presses on \"p1\" and \"p2\"",
+                    ErrorOfForce(bench.explanation.scene, Simulation(bench.explanation.scene)).presses()));
   CHECK(bench.omitted("other free vertices") != nullptr);
   CHECK(bench.omitted("elasticity") == nullptr);
   CHECK(bench.explanation.steps.contacts == 200);
