@@ -18,6 +18,7 @@ constexpr double kClear = 10;           // of the tool radius: how far above the
 constexpr double kSlide = 0.1;          // of the tool radius: amplitude of the sliding
 constexpr double kSlideSteps = 40;      // of one turn of it
 constexpr std::size_t kTries = 64;      // vertices to press on before giving up
+constexpr int kUnsettledTries = 4;      // of these, flagged: each may take seconds
 constexpr double kUsualPeriod = 0.033;  // s, where the scene names no rate
 
 double period_of(const Scene& scene) {
@@ -94,6 +95,7 @@ std::vector<ToolForce> approach(const Scene& scene, Simulation& simulation, Site
 std::optional<Press> press_of(const Scene& scene, Simulation& simulation, std::size_t tool, Sites others) {
   const std::vector<Vec3> normals = normals_at_rest(simulation);
   std::vector<Press> unsettled;
+  int flagged = 0;
   const double radius = scene.tools[tool].shape.radius;
   for (const int vertex : clear_of(others, scene, tool, simulation, candidates(scene, simulation, tool))) {
     std::vector<std::optional<Press>> sites(tool + 1);
@@ -102,6 +104,8 @@ std::optional<Press> press_of(const Scene& scene, Simulation& simulation, std::s
     simulation.step(std::vector<ToolInput>(simulation.tools()), 0);
     if (force.contacts > 0 && !force.flagged) return sites[tool];
     unsettled.insert(force.contacts > 0 ? unsettled.begin() : unsettled.end(), *sites[tool]);
+    flagged += force.flagged ? 1 : 0;
+    if (flagged == kUnsettledTries) break;
   }
   return unsettled.empty() ? std::optional<Press>() : unsettled.front();
 }

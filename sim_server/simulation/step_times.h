@@ -17,7 +17,8 @@ Press press_on(const Vec3& surface, const Vec3& normal, double radius) noexcept;
 
 /// A place in the middle of what the first tool can reach, on a vertex that is not fixed if there is one,
 /// pressed to 40 % of the tool's radius. Tries 64 vertices, nearest to the middle first, until one gives
-/// settled contact; if none does, takes one that gives any. Leaves the tool lifted. Set-up only.
+/// settled contact, or four are flagged; if none does, takes one that gives any. Leaves the tool lifted.
+/// Set-up only.
 Press find_press(const Scene& scene, Simulation& simulation);
 
 /// Such a place for each tool, clear of those of the tools before it where there is room; where the scene has

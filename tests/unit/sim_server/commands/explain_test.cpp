@@ -10,6 +10,7 @@
 #include "sim_server/simulation/element_trial.h"
 #include "sim_server/simulation/error_of_force.h"
 #include "tests/support/catch.h"
+#include "tests/support/scenes.h"
 #include "tests/support/solids.h"
 #include "tests/support/temporary_folder.h"
 
@@ -303,6 +304,19 @@ TEST_CASE(
   CHECK(vertex[2] > 0.001);
   CHECK(simulation.step(press.place + 0.41 * 0.004 * press.normal, 1e-3).force == Vec3::Zero());
   CHECK(simulation.step(press.place, 1e-3).force.norm() > 0.001);
+}
+
+TEST_CASE(
+    "explain: where presses settle nowhere, as of a sheet pressed through to its support, four are tried") {
+  Scene scene =
+      test::scene_of({.young_modulus = 1e4, .poisson_ratio = 0.4, .law = ElasticLaw::kStVenantKirchhoff},
+                     {Vec3(-1, -1, -1), Vec3(1, 1e-4, 1)}, 0.02);
+  scene.deformation.model = "implicit";
+  Simulation simulation(scene, test::corner_block({0.03, 0.004, 0.03}, {4, 1, 4}));
+  REQUIRE(simulation.touchable(0).size() > 8);
+  const Press press = find_press(scene, simulation);
+  CHECK(simulation.flagged().inside_out == 4);
+  CHECK(press.place[1] == Approx(0.004 + 0.6 * 0.02));
 }
 
 TEST_CASE("explain: each of several tools with its radius, what it reaches, and its own contact memory") {
