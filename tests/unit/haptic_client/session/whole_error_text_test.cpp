@@ -1,6 +1,8 @@
 // What the headline of a client's report says of the age of its force.
 #include <nlohmann/json.hpp>
 
+#include "haptic_client/extrapolation/extrapolators.h"
+#include "haptic_client/pipeline/pipeline.h"
 #include "haptic_client/session/whole_error.h"
 #include "tests/support/catch.h"
 
@@ -44,4 +46,29 @@ TEST_CASE("report: a total of which the mesh's share is not known says so after 
   CHECK(
       total_text({{"total_percent", nullptr}, {"hand_percent", 18}}) ==
       "18 % of its root mean square in the mean, and what mesh and time step add to it, which is not known");
+}
+
+TEST_CASE("report: how the mesh's share is known is told of each source, with the command that measures it") {
+  const auto how = [](const DiscretisationErrors& errors) {
+    Pipeline pipeline(find_row(extrapolators(), "constant", "law", "test").make(), {}, {});
+    Observation observation({"constant"}, 500, "test", Workspace{}, 0);
+    for (std::uint64_t tick = 1; tick <= 10; ++tick) {
+      const Time t = from_seconds(1 + 0.002 * static_cast<double>(tick));
+      protocol::ForceSample sample{.number = tick, .tool_t_ns = t.count(), .f_W = {0, 1, 0}};
+      sample.flags = protocol::ForceSample::kHasErrors;
+      sample.errors = errors;
+      observation.tick(pipeline.tick({.t = t}, &sample), Time::zero(), 0);
+    }
+    return whole_error_report(observation)["how"];
+  };
+  const Json estimated = how({{ErrorSource::kEstimated, 30}, {ErrorSource::kMeasured, 2}});
+  CHECK(estimated["mesh"] ==
+        "estimated, by elements to a radius of the tool or by presses on linear and quadratic ones; "
+        "`sim_server study SCENE --out DIR` measures it");
+  CHECK(estimated["motion"] ==
+        "measured by a study of this scene, within a radius of the tool of where it pressed");
+  const Json none = how({{ErrorSource::kNone, 0}, {ErrorSource::kNone, 0}});
+  CHECK(none["mesh"] == "none: this tissue has no mesh");
+  CHECK(none["motion"] == "none: the force follows from the place of the tool alone");
+  CHECK(how({})["mesh"] == "unknown: nobody has measured it; `sim_server study SCENE --out DIR` does");
 }

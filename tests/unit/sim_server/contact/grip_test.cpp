@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "common/error.h"
+#include "sim_server/contact/tool_contact.h"
 #include "sim_server/mesh/shapes.h"
 #include "sim_server/models/rigid.h"
 #include "sim_server/models/spring.h"
@@ -191,4 +192,39 @@ TEST_CASE("a grip that cannot be is refused in one line") {
   const std::string both =
       file.string() + ":7: a tool grasps by `grasp_buttons` or always, from `grasp_place` on; remove one";
   CHECK_THROWS_WITH(read_scene(file), both);
+}
+
+TEST_CASE("of a patch that a tool holds a cut leaves the triangles that are still there, and no others") {
+  const TetMesh mesh = test::little_block(kCells);
+  const Surface surface = boundary_surface(mesh);
+  std::vector<Vec3> rest;
+  for (const int v : surface.vertices) rest.push_back(mesh.vertices[v]);
+  ToolContact tool(grasping_scene().tools[0], rest, surface, surface.triangles, {}, true);
+  REQUIRE(tool.holds());
+  // Of its patch where one vertex is lifted by a millimetre.
+  const auto strain = [&](int vertex) {
+    std::vector<Vec3> positions = rest;
+    positions[vertex] += Vec3(0, 1e-3, 0);
+    return tool.surface_strain(positions, rest);
+  };
+  const auto has = [](const Triangle& t, int vertex) { return std::ranges::find(t, vertex) != t.end(); };
+  const int gone = static_cast<int>(
+      std::ranges::min_element(rest, {}, [](const Vec3& x) { return (x - kPlace).norm(); }) - rest.begin());
+  std::vector<int> left;  // in its patch, of no triangle that goes
+  for (int v = 0; v < static_cast<int>(rest.size()); ++v) {
+    const bool beside =
+        std::ranges::any_of(surface.triangles, [&](const Triangle& t) { return has(t, v) && has(t, gone); });
+    if (!beside && strain(v) > 0) left.push_back(v);
+  }
+  REQUIRE(strain(gone) > 0);
+  REQUIRE(left.size() > 3);
+  std::vector<double> before;
+  for (const int v : left) before.push_back(strain(v));
+  std::vector<Triangle> touchable = surface.triangles;
+  std::erase_if(touchable, [&](const Triangle& t) { return has(t, gone); });
+  const Surface cut{surface.vertices, touchable, surface.per_face};
+  tool.change_surface(rest, cut, touchable, [&](int v) { return v != gone; });
+  CHECK(tool.holds());
+  CHECK(strain(gone) == 0);
+  for (std::size_t i = 0; i < left.size(); ++i) CHECK(strain(left[i]) == before[i]);
 }
