@@ -20,6 +20,8 @@ namespace palpate {
 namespace {
 // Of what moves: a gap that wide is not closed; nor, after Newton's step, which leaves less.
 constexpr double kNearby = 2, kNearbyNewton = 0.5;
+// Of what the curvature of gaps does, is left out: so little that one iteration more or less is not felt.
+constexpr double kInexactStep = 1e-8, kInexactTangent = 1e-9;
 }  // namespace
 
 /// Calls `visit` with the place among the nodes considered of each node that a row may not be zero for, and
@@ -179,7 +181,7 @@ bool ContactSolver::step_on_closed(const Eigen::Ref<const Eigen::VectorXd>& gap,
   closed_.find_forces(forces, loads);
   closed_.press(forces, moved);
   moved -= local;
-  if (!closed_.bend(moved, path_.inexact_step)) return false;
+  if (!closed_.bend(moved, kInexactStep)) return false;
   closed_.curve(moved, loads);
   take_gaps();
   closed_.find_forces(forces, loads);
@@ -333,7 +335,7 @@ bool ContactSolver::change_loads(const ContactPatch& patch, int tool) noexcept {
     closed_.find_forces(forces, loads);
     closed_.press(forces, moved);
     moved[tip + axis] += 1;  // E
-    if (!closed_.bend(moved, path_.inexact_tangent)) return false;
+    if (!closed_.bend(moved, kInexactTangent)) return false;
     closed_.curve(moved, loads);
     forces = second_.jacobian.col(tip + axis);
     closed_.find_forces(forces, loads);

@@ -16,9 +16,6 @@ constexpr int kFewest = 96;  // never fewer nodes, or contacts: those of a clien
 // Of what the conditions of friction lack, remains for the next iteration, which changes them by more: half
 // as many solves in all as at 0.
 constexpr double kInexact = 1e-2;
-// Of what the curvature of gaps does, Newton's steps leave out as much as the next one finds anyway, and the
-// tangent as much as the solution; within these.
-constexpr double kLeastInexact = 1e-4, kMostInexact = 0.1, kLeastInTangent = 1e-9, kMostInTangent = 1e-3;
 // How far beyond the radius features are considered: a multiple of what moved last, within fractions of the
 // radius.
 constexpr double kMargin = 4, kMinReach = 1e-3, kMaxReach = 0.05;
@@ -296,8 +293,6 @@ void ContactSolver::solve(ContactPatch& patch, std::span<const TouchingTool> too
   const double radius = std::ranges::min(path_.tools, {}, &MovedTool::radius).radius;
   auto next = next_.head(u.size()), increment = increment_.head(u.size());
   double change = effort.expected * radius, last_change = radius;
-  path_.inexact_step = kLeastInexact;
-  path_.inexact_tangent = std::clamp(effort.tolerance, kLeastInTangent, kMostInTangent);
   PlainStep step;
   NewtonTurns turns;
   bool newton_worked = false;
@@ -321,7 +316,6 @@ void ContactSolver::solve(ContactPatch& patch, std::span<const TouchingTool> too
                            (next - u).cwiseAbs().maxCoeff() < kLongestMove * radius;
     const bool solved = by_newton || plain_step(patch, next) || !path_.has_friction;
     change = (next - u).cwiseAbs().maxCoeff();
-    path_.inexact_step = std::clamp(effort.tolerance * radius / change, kLeastInexact, kMostInexact);
     // Newton's next step is at least as much shorter than this one as this is than the last.
     const double remaining =
         by_newton && newton_worked ? change * std::min(1.0, change / last_change) : change;

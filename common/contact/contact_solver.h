@@ -272,8 +272,6 @@ class ContactSolver {
     std::span<const int> vertices;  // that the nodes are; empty: numbered as the nodes
     std::vector<MovedTool> tools;
     bool has_friction = false;  // one of them has
-    // Of what the curvature of gaps does, what is left out in a Newton step and in the tangent.
-    double inexact_step = 0, inexact_tangent = 0;
   } path_;
   ClosedContacts closed_;  // for those without friction
   /// Second derivatives: the contacts considered, their nodes (the tip last), and matrices over those nodes.
