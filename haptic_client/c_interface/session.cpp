@@ -144,6 +144,7 @@ void palpate_session::tick(const palpate_tool_state& published, palpate_rendered
   const bool fresh = mailboxes_.force.read(sample);
   std::size_t pages = 0;
   while (pages < pages_.size() && mailboxes_.pages.pop(pages_[pages])) ++pages;
+  pipeline_.bound_pages(mailboxes_.pages_hz.load(std::memory_order_relaxed));
   const TickResult result = pipeline_.render(tool, fresh ? &sample : nullptr, std::span(pages_).first(pages));
   if (result.used) newest_ = sample;
   mailboxes_.tool.push(result.tool);

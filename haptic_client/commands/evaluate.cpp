@@ -111,14 +111,38 @@ std::optional<Sample> take_sample(const CapturedTick& tick, const std::vector<Re
   return sample;
 }
 
-/// How far the tool was, at most, from where that of the truth was at the same time, m.
+/// How far the tool was, at most, from where that of the truth was at the same time, m; and how many samples
+/// there were, and at how many of their times there is no truth.
 struct FromTruth {
   const Truth* truth;
   double most = 0;
+  std::uint64_t samples = 0, without = 0;
   void add(const Sample& sample) {
-    if (truth != nullptr) most = std::max(most, truth->distance(sample.p, sample.t).value_or(0));
+    if (truth == nullptr) return;
+    const std::optional<double> apart = truth->distance(sample.p, sample.t);
+    ++samples;
+    without += apart ? 0 : 1;
+    most = std::max(most, apart.value_or(0));
   }
 };
+
+/// That the truth is of the whole of it: what it leaves out would not be scored.
+void require_same_span(const FromTruth& from, const std::filesystem::path& file,
+                       const EvaluateOptions& options) {
+  constexpr double kMissing = 0.05;  // of the samples
+  if (static_cast<double>(from.without) <= kMissing * static_cast<double>(from.samples)) return;
+  if (from.without == from.samples) {
+    fail(
+        "{}: no sample of it is of a time that --truth {} knows: a session of another clock, or begun at "
+        "another time; record both with `sim_server record` and the same --trajectory",
+        file.string(), options.truth->string());
+  }
+  fail(
+      "{}: --truth {} ends before it, or begins later: it knows the time of {:.0f} % of the samples, and the "
+      "others would not be scored; record the truth over the whole motion, or this capture with --seconds",
+      file.string(), options.truth->string(),
+      100 * static_cast<double>(from.samples - from.without) / static_cast<double>(from.samples));
+}
 
 /// That both captures are of one motion: the line between two samples of a truth is off by micrometres.
 void require_same_motion(const FromTruth& from, const std::filesystem::path& file,
@@ -190,6 +214,7 @@ Evaluation run(const std::filesystem::path& file, const std::vector<std::string>
   }
   progress(file.filename().string(), 1);
   require_same_motion(from_truth, file, options);
+  require_same_span(from_truth, file, options);
   require_scored(e, file);
   return e;
 }

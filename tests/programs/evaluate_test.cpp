@@ -272,5 +272,12 @@ TEST_CASE("evaluate: a truth of another motion is refused, with how far apart th
                                             Catch::Matchers::Contains("differs by: material;") &&
                                             Catch::Matchers::Contains("record the truth again"));
   CHECK_THAT(evaluate("other.pcap", 2), Catch::Matchers::Contains("up to 2 mm away"));
+  // So is one of a part of it.
+  output_of("sim_server",
+            {"record", scene, "--trajectory", file("motion_0.csv"), "--rate", "500", "--seconds", "0.5",
+             "--out", file("part.pcap"), "--plain"},
+            0);
+  CHECK_THAT(evaluate("part.pcap", 2), Catch::Matchers::Contains("knows the time of") &&
+                                           Catch::Matchers::Contains("would not be scored"));
 }
 #endif
