@@ -11,7 +11,6 @@ constexpr double kLongestMove = 0.2;    // of the tool radius, per iteration
 constexpr double kFirstStep = 2.0 / 3;  // of the way to the solution of the first linearised contact
 // Of the largest patch: how much may be near enough to touch, where Newton steps are taken.
 constexpr double kTouching = 0.5;
-constexpr int kEnds = 4;     // nodes and tip of a contact
 constexpr int kFewest = 96;  // never fewer nodes, or contacts: those of a client's patch (`ContactOnPatch`)
 // Of what the conditions of friction lack, remains for the next iteration, which changes them by more: half
 // as many solves in all as at 0.
@@ -58,16 +57,6 @@ class NewtonTurns {
   int failures_ = 0, plain_remaining_ = 0;
 };
 
-/// Lists the nodes of contacts, each once.
-void list_nodes(std::span<const Contact> contacts, std::vector<int>& nodes) noexcept {
-  nodes.clear();
-  for (const Contact& c : contacts) {
-    for (int i = 0; i < c.size; ++i) {
-      if (std::ranges::find(nodes, c.node[i]) == nodes.end()) nodes.push_back(c.node[i]);
-    }
-  }
-}
-
 }  // namespace
 
 const ContactSolver::Effort ContactSolver::kUsualEffort{};
@@ -93,16 +82,13 @@ ContactSolver::ContactSolver(int max_nodes, int max_triangles, bool friction, in
   most_nodes_ = std::min(max_nodes, std::max(kFewest, static_cast<int>(kTouching * max_nodes)));
   most_contacts_ = std::min(max_triangles, std::max(kFewest, static_cast<int>(kTouching * max_triangles)));
   const int touching = 3 * (most_nodes_ + tools), touched = most_contacts_ + across_rows * most_nodes_;
-  for (BoundedMatrix* square : {&second_.curvature, &second_.compliance}) square->reserve(touching, touching);
-  closed_ = ClosedContacts(touching, most_contacts_, kEnds * most_contacts_, kEnds * kEnds * most_contacts_);
+  for (BoundedMatrix* square : {&second_.curvature, &second_.compliance, &second_.system})
+    square->reserve(touching, touching);
+  for (BoundedMatrix* tall : {&response_, &second_.bent, &second_.toward})
+    tall->reserve(touching, touched + across_rows / 2 * most_nodes_ + 3);
   second_.jacobian.reserve(touched + across_rows / 2 * most_nodes_, touching);
-  if (friction) {
-    second_.system.reserve(touching, touching);
-    for (BoundedMatrix* tall : {&response_, &second_.bent, &second_.toward})
-      tall->reserve(touching, touched + most_nodes_ + 3);
-    second_.spread.reserve(touching, touched);
-    second_.turning.reserve(touched, most_contacts_);
-  }
+  if (friction) second_.spread.reserve(touching, touched);
+  if (friction) second_.turning.reserve(touched, most_contacts_);
   delassus_.reserve(rows + across_rows / 2 * max_nodes, rows + 3);
   gap_.resize(rows);
   lambda_.resize(rows);
@@ -242,26 +228,23 @@ void ContactSolver::linearise(ContactPatch& patch, const Eigen::Ref<const Eigen:
   }
 }
 
-/// W C W^T, and the compliance of the contacts themselves. Column by column: C of a contact's force at the
-/// nodes of contacts (in `next_`), then what of it each contact sees.
+/// W C W^T, and the compliance of the contacts themselves. Column by column: C of a contact's force on the
+/// surface (in `next_`), then what of it each contact sees.
 void ContactSolver::assemble_delassus(const ContactPatch& patch) noexcept {
   const auto n = static_cast<Eigen::Index>(contacts_.size()), size = rows();
   delassus_.shape(size, size);
-  list_nodes(contacts_, second_.nodes);
-  const auto moved = [this](int node) { return next_.segment<3>(3 * node); };
+  const Eigen::Index unknowns = 3 * patch.nodes();
+  auto moved = next_.head(unknowns);
   for (Eigen::Index column = 0; column < size; ++column) {
     const Contact& b = contact_of(column);
     const Vec3 db = direction(column), at_tip = patch.tool_compliance * b.at_tip(db);
-    for (const int node : second_.nodes) moved(node).setZero();
-    for (int j = 0; j < b.size; ++j) {
-      const Vec3 load = b.weight[j] * db;
-      for (const int node : second_.nodes)
-        moved(node) += patch.compliance.block<3, 3>(3 * node, 3 * b.node[j]) * load;
-    }
+    moved.setZero();
+    for (int j = 0; j < b.size; ++j)
+      moved.noalias() += patch.compliance.block(0, 3 * b.node[j], unknowns, 3) * (b.weight[j] * db);
     for (Eigen::Index row = 0; row <= column; ++row) {
       const Contact& a = contact_of(row);
       Vec3 relative = a.tool == b.tool ? a.at_tip(at_tip) : Vec3(Vec3::Zero());
-      for (int i = 0; i < a.size; ++i) relative += a.weight[i] * moved(a.node[i]);
+      for (int i = 0; i < a.size; ++i) relative += a.weight[i] * moved.segment<3>(3 * a.node[i]);
       delassus_(row, column) = delassus_(column, row) = direction(row).dot(relative);
     }
   }
@@ -302,8 +285,7 @@ void ContactSolver::solve(ContactPatch& patch, std::span<const TouchingTool> too
     const bool contacts_complete = find_contacts(tools, u, change),
                complete = find_friction_nodes(patch) && contacts_complete;
     const auto size = static_cast<double>(rows());
-    list_nodes(contacts_, second_.nodes);
-    if (!work_.spend(size * (27 * static_cast<double>(second_.nodes.size()) + 9 * size))) {
+    if (!work_.spend(size * (27.0 * m + 9 * size))) {
       contacts_.clear();
       find_friction_nodes(patch);
       next = u;
@@ -503,7 +485,7 @@ std::size_t ContactSolver::bytes() const {
   return coulomb_.bytes() + complementarity_.bytes() + delassus_.bytes() + response_.bytes() +
          second_.curvature.bytes() + second_.compliance.bytes() + second_.bent.bytes() +
          second_.toward.bytes() + second_.system.bytes() + second_.jacobian.bytes() + second_.spread.bytes() +
-         second_.turning.bytes() + closed_.bytes();
+         second_.turning.bytes();
 }
 
 }  // namespace palpate

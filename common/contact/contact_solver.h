@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "common/contact/bounded_matrix.h"
-#include "common/contact/closed_contacts.h"
 #include "common/contact/complementarity.h"
 #include "common/contact/coulomb.h"
 #include "common/contact/narrow_phase.h"
@@ -136,8 +135,6 @@ class ContactSolver {
 
   /// Returns the work of the last solve, multiplications, roughly.
   double work() const noexcept { return work_.used(); }
-  /// Returns true if it ended for want of work.
-  bool is_out_of_work() const noexcept { return work_.is_spent(); }
 
   /// Nodal forces on the patch nodes (3m, N) of the last solve; the tissue feels minus what the tool feels.
   Eigen::Ref<const Eigen::VectorXd> node_forces() const { return node_force_.head(force_size_); }
@@ -212,30 +209,21 @@ class ContactSolver {
   // and in contact_newton.cpp:
   template <class Visit>
   void each_block_of_curvature(const Visit& visit) const;
-  void assemble_compliance(const ContactPatch& patch) noexcept;
-  void assemble_system() noexcept;
-  void start_closed(const ContactPatch& patch) noexcept;
-  bool close(std::span<const int> contacts) noexcept;
-  bool step_on_closed(const Eigen::Ref<const Eigen::VectorXd>& gap,
-                      const Eigen::Ref<const Eigen::VectorXd>& local, Eigen::Ref<Eigen::VectorXd> forces,
-                      Eigen::Ref<Eigen::VectorXd> loads, Eigen::Ref<Eigen::VectorXd> moved) noexcept;
+  void assemble_system(const ContactPatch& patch) noexcept;
   template <class Visit>
   void each_slot(Eigen::Index row, const Visit& visit) const;
   void spread_over(Eigen::Index first, bool forces, Eigen::Ref<Eigen::MatrixXd> moved) const noexcept;
-  void list_gap_changes(Eigen::Index row) noexcept;
   void find_gap_changes(Eigen::Index from, Eigen::Index to) noexcept;
   bool respond(const ContactPatch& patch, const Eigen::Ref<const Eigen::MatrixXd>& loads) noexcept;
   bool solve_on_active_set(const Eigen::Ref<const Eigen::VectorXd>& gap,
-                           const Eigen::Ref<const Eigen::VectorXd>& local, Eigen::Ref<Eigen::VectorXd> force,
-                           Eigen::Ref<Eigen::VectorXd> loads) noexcept;
-  bool solve_with_friction(const ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u,
-                           Eigen::Ref<Eigen::VectorXd> gap, Eigen::Ref<Eigen::VectorXd> lambda) noexcept;
+                           Eigen::Ref<Eigen::VectorXd> force) noexcept;
+  bool solve_newton_contacts(const Eigen::Ref<const Eigen::VectorXd>& gap,
+                             Eigen::Ref<Eigen::VectorXd> force) noexcept;
   void consider_near(double change) noexcept;
   bool newton_step(const ContactPatch& patch, const Eigen::Ref<const Eigen::VectorXd>& u, double change,
                    Eigen::Ref<Eigen::VectorXd> next) noexcept;
   bool differentiate_forces(Eigen::Ref<Eigen::Matrix<double, Eigen::Dynamic, 3>> change) noexcept;
-  bool change_loads(const ContactPatch& patch, int tool) noexcept;
-  bool change_loads_with_friction(const ContactPatch& patch, int tool) noexcept;
+  Mat3 tangent_of_considered(const ContactPatch& patch, int tool) noexcept;
 
   WorkBudget work_;
   double contact_compliance_ = 0, friction_compliance_ = 0;  // m/N, of this patch
@@ -273,14 +261,19 @@ class ContactSolver {
     std::vector<MovedTool> tools;
     bool has_friction = false;  // one of them has
   } path_;
-  ClosedContacts closed_;  // for those without friction
+  /// Entry of a row of B.
+  struct GapChange {
+    int at;
+    Vec3 by;
+  };
   /// Second derivatives: the contacts considered, their nodes (the tip last), and matrices over those nodes.
   struct SecondOrder {
     std::vector<int> considered, friction_nodes, rows, active, nodes, slot_of_node;
-    std::vector<ClosedContacts::GapChange> gap_changes;  // a row of B, where it is not zero
+    std::vector<GapChange> gap_changes;  // a row of B, where it is not zero
     std::vector<FrictionPlaces::Share> shares;
     std::vector<double> mu;
-    int unloaded = 0;  // of `nodes`, the first ones
+    int system_sign = 1;  // of the determinant of I - C S
+    int unloaded = 0;     // of `nodes`, the first ones
     BoundedMatrix curvature, compliance, bent, toward, system, jacobian;
     BoundedMatrix spread, turning;  // A, and dw/dlambda at fixed places, only with friction
     Eigen::Matrix<double, Eigen::Dynamic, 3> moved, rhs, load_change;

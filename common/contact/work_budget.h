@@ -15,12 +15,10 @@ class WorkBudget {
   }
   /// Uses some; false where there is not as much left, and from then on.
   bool spend(double multiplications) noexcept {
-    spent_ = !has(multiplications);
+    spent_ = spent_ || !(used_ + multiplications <= allowed_);
     if (!spent_) used_ += multiplications;
     return !spent_;
   }
-  /// Returns true if as much is left.
-  bool has(double multiplications) const noexcept { return !spent_ && used_ + multiplications <= allowed_; }
   bool is_spent() const noexcept { return spent_; }
   double used() const noexcept { return used_; }
 

@@ -125,10 +125,8 @@ bool ContactOnPatch::increment(const Surface& surface, const Vec3& p) noexcept {
   const bool predicted = predict_tangent(motion);
   const ContactForce contact =
       solving.solve(patch_, surface.tool, p, displacement(), {start_, tip}, effort(surface));
-  if (!contact.converged) {
-    work_remaining_ -= solving.work();
-    return false;
-  }
+  work_remaining_ -= solving.work();
+  if (!contact.converged) return false;
   note_loads(solving);
   state_.force = contact.force;
   state_.contacts = contact.contacts;
@@ -136,10 +134,8 @@ bool ContactOnPatch::increment(const Surface& surface, const Vec3& p) noexcept {
   if (predicted && touched == state_.contacts) {
     learn_tangent(motion, before);
   } else if (state_.contacts > 0) {
-    const Mat3 tangent = solving.tangent(patch_);  // zero where there is too little work for it
-    if (!tangent.isZero(0) || !solving.is_out_of_work()) state_.tangent = tangent;
+    state_.tangent = solving.tangent(patch_);
   }
-  work_remaining_ -= solving.work();
   return state_.force.allFinite() && state_.tangent.allFinite() && displacement().allFinite();
 }
 
