@@ -34,9 +34,10 @@ constexpr Time kGrows = 10ms;                 // from one look to the next: the 
 constexpr Time kFalls = 5ms;                  // the queue empties
 constexpr int kLooksThatGrow = 2;             // a way that becomes longer at once grows in one
 constexpr double kMostLost = 0.1;             // share of datagrams, in a look
-constexpr Time kSettles = 300ms;              // after a change, until its effect shows
-constexpr Time kStays = 1500ms;               // as long below full: what is sent fills the link
-constexpr Time kCalm = 25ms;                  // in a queue: no congestion
+constexpr Time kStallEnds = 50ms;  // after the first look at what it held back, which comes at once
+constexpr Time kSettles = 300ms;   // after a change, until its effect shows
+constexpr Time kStays = 1500ms;    // as long below full: what is sent fills the link
+constexpr Time kCalm = 25ms;       // in a queue: no congestion
 constexpr Time kCalmAfterFailure = 10s, kLongestCalm = 300s;
 constexpr Time kTrial = 10s;  // congestion so soon after the level went up: it went too far
 
@@ -120,27 +121,40 @@ bool LinkPace::loses() const noexcept {
          exceeds(lost, lost + came, kMostLost);
 }
 
-void LinkPace::judge(Time delay, Time now) noexcept {
-  const Time before = std::exchange(delay_, delay);
-  if (now < settled_) return;
+/// True if a queue grows, stays, or is still there after something was lost in it. A stall of a quick link
+/// delays and loses as much, but once it is over nothing waits.
+bool LinkPace::is_congested(Time delay, Time before, Time now) noexcept {
   const bool waits = delay > kWaits;
   grew_ = waits && delay > before + kGrows ? grew_ + 1 : 0;
   if (!waits || delay < before - kFalls)
     waits_since_.reset();
   else if (!waits_since_)
     waits_since_ = now;
+  if (!waits)
+    loses_since_.reset();
+  else if (!loses_since_ && loses())
+    loses_since_ = now;
+  const bool stays = level_ != LinkLevel::kFull && waits_since_ && now - *waits_since_ > kStays;
+  return grew_ >= kLooksThatGrow || (loses_since_ && now - *loses_since_ > kStallEnds) || stays;
+}
+
+void LinkPace::judge(Time delay, Time now) noexcept {
+  const Time before = std::exchange(delay_, delay);
+  if (now < settled_) return;
   if (delay > kCalm)
     calm_since_.reset();
   else if (!calm_since_)
     calm_since_ = now;
-  const bool stays = level_ != LinkLevel::kFull && waits_since_ && now - *waits_since_ > kStays;
-  if (grew_ >= kLooksThatGrow || (waits && loses()) || stays) {
+  if (is_congested(delay, before, now)) {
     if (raised_ != Time{} && now - raised_ < kTrial)
       calm_ = std::clamp(2 * calm_, kCalmAfterFailure, kLongestCalm);
     change(neighbour(level_, 1), now);
   } else if (level_ != LinkLevel::kFull && calm_since_ && now - *calm_since_ > calm_) {
     raised_ = now;
     change(neighbour(level_, -1), now);
+  } else if (now - quiet_since_ > 2 * calm_) {  // once would be over just before the trial that may fail
+    calm_ = std::max(calm_ / 2, kFirstCalm);
+    quiet_since_ = now;
   }
 }
 
@@ -149,7 +163,8 @@ void LinkPace::change(LinkLevel level, Time now) noexcept {
   level_ = level;
   settled_ = level > LinkLevel::kFull && raised_ != now ? now + std::max(kSettles, 2 * delay_) : now;
   grew_ = 0;
-  calm_since_.reset(), waits_since_.reset();
+  quiet_since_ = now;
+  calm_since_.reset(), waits_since_.reset(), loses_since_.reset();
 }
 
 }  // namespace palpate::client

@@ -24,10 +24,11 @@ const char* name_of(LinkLevel level) noexcept;
 
 /// Decides how much travels, so that the queue of a slow link does not grow. A queue delays all samples: the
 /// least age of a few of them stands above that of the last 10 to 20 s (as in `PagePace`, after LEDBAT, RFC
-/// 6817), by more than jitter explains (`Jitter`). Where it grows meanwhile, or datagrams are lost, or it
-/// stays, the level goes down by one. After a calm time the level goes up by one; where that fails, twice the
-/// time passes until the next trial. Loss alone changes nothing, nor does a way that becomes longer at once.
-/// A session begins packed. Pure; network thread; no allocation.
+/// 6817), by more than jitter explains (`Jitter`). Where it grows meanwhile, or is still there after
+/// datagrams were lost, or stays, the level goes down by one. After a calm time the level goes up by one;
+/// where that fails, twice the time passes until the next trial, and half of it once no level changed for so
+/// long. Loss alone changes nothing, nor does a way that becomes longer at once, nor a stall, however often
+/// it recurs. A session begins packed. Pure; network thread; no allocation.
 class LinkPace {
  public:
   /// A sample came at `now`. `age`: since its tool position was read.
@@ -62,6 +63,7 @@ class LinkPace {
     std::uint64_t came = 0, newest = 0;  // how many samples, and the number of the newest
     protocol::UplinkCounts uplink{};     // of the newest
   };
+  bool is_congested(Time delay, Time before, Time now) noexcept;
   void judge(Time delay, Time now) noexcept;
   bool loses() const noexcept;
   void change(LinkLevel level, Time now) noexcept;
@@ -72,7 +74,8 @@ class LinkPace {
   Time settled_{};                   // not judged before: the queue needs time to follow
   Time raised_{};                    // when the level last went up
   Time calm_ = kFirstCalm;           // how long it must be before more is tried
-  std::optional<Time> calm_since_, waits_since_;
+  Time quiet_since_{};               // when the level last changed, or `calm_` became shorter
+  std::optional<Time> calm_since_, waits_since_, loses_since_;
   int grew_ = 0;       // looks in a row in which the delay did
   RecentLeast least_;  // age
   Time delay_{};       // of the look before

@@ -1,6 +1,7 @@
 #include "haptic_client/session/link_pace.h"
 
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "common/ages.h"
@@ -174,6 +175,22 @@ PacedSession paced(double kbit_s, Time span = 60s) {
   return PacedPair(line, line).run(span);
 }
 
+/// Down a quick link without a limit of bandwidth, that holds all back for the last `length` of each `every`,
+/// loses some 30 % of it, drawn, and gives the others at once.
+LinkConditions stalled(Time every, Time length, Time span) {
+  constexpr Time kPart = 2ms;
+  std::mt19937_64 random(1);
+  LinkConditions link{.delay_steps = {{Time{}, 0.02}}};
+  for (Time end = 10s + every; end < 10s + span; end += every) {
+    for (Time t = end - length; t < end; t += kPart) {
+      link.delay_steps.push_back({t, to_seconds(end - t)});
+      if (random() % 10 < 3) link.partitions.push_back({t, t + kPart});
+    }
+    link.delay_steps.push_back({end, 0.02});
+  }
+  return link;
+}
+
 Time spent(const PacedSession& session, LinkLevel level) {
   return session.spent[static_cast<std::size_t>(level)];
 }
@@ -247,6 +264,51 @@ TEST_CASE("link pace: jitter of 40 and of 80 ms each way is no queue") {
     CHECK(to_seconds(spent(session, LinkLevel::kFull)) > 110);
     CHECK(spent(session, LinkLevel::kLean) + spent(session, LinkLevel::kSparse) == 0s);
   }
+}
+
+// The report calls a link slow that is packed for more than 2 s, or that carries less than that.
+TEST_CASE("link pace: a quick link that stalls again and again is no slow one") {
+  for (const auto& [every, length] : {std::pair<Time, Time>{5s, 500ms}, {3s, 350ms}}) {
+    const PacedSession session = PacedPair({.delay = 0.02}, stalled(every, length, 600s)).run(600s);
+    CAPTURE(to_seconds(every), to_seconds(spent(session, LinkLevel::kFull)));
+    REQUIRE(session.samples < 17500);  // of 18000: the link did lose
+    CHECK(to_seconds(spent(session, LinkLevel::kFull)) > 0.8 * 600);
+    CHECK(to_seconds(spent(session, LinkLevel::kPacked)) < 2);
+    CHECK(spent(session, LinkLevel::kPlain) + spent(session, LinkLevel::kLean) +
+              spent(session, LinkLevel::kSparse) ==
+          0s);
+  }
+}
+
+TEST_CASE("link pace: trials that failed make the next ones rare, until no queue came for long") {
+  LinkPace pace;
+  ForceSample sample{.number = 0};
+  Time t = 10s;
+  const auto tell = [&](Time age) {
+    ++sample.number;
+    pace.sample(sample, age, t);
+    t += 50ms;
+  };
+  const auto quick = [&](Time span) {
+    for (const Time end = t + span; t < end;) tell(30ms);
+  };
+  const auto fill = [&] {
+    for (int i = 1; i <= 9; ++i) tell(30ms + i * 40ms);
+  };
+  for (const Time calm : {Time{3s}, Time{12s}, Time{22500ms}}) {
+    quick(calm);
+    REQUIRE(pace.level() == LinkLevel::kFull);
+    fill();
+    REQUIRE(pace.level() == LinkLevel::kPacked);
+  }
+  quick(36s);  // of 40 s: a trial that is waited for makes the wait no shorter
+  CHECK(pace.level() == LinkLevel::kPacked);
+  // Late for a moment each 3 s, so that it is never calm for longer. 80 + 40 + 20 + 10 s later 2.5 s do.
+  for (int i = 0; i < 50; ++i) {
+    for (int late = 0; late < 3; ++late) tell(100ms);
+    quick(2850ms);
+  }
+  CHECK(pace.level() == LinkLevel::kFull);
 }
 
 TEST_CASE("link pace: at one step a second, too, twenty states a second leave at least") {
