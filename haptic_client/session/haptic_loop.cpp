@@ -72,7 +72,8 @@ void HapticLoop::report(const TickResult& result) noexcept {
   law_newton.store(pipeline_.law_newton(), std::memory_order_relaxed);
   gain.store(pipeline_.passivity().gain(), std::memory_order_relaxed);
   paused.store(pipeline_.paused(), std::memory_order_relaxed);
-  doubt.store(pipeline_.doubt(), std::memory_order_relaxed);
+  const std::optional<Doubt> why = pipeline_.doubt();
+  doubt.store(why ? static_cast<int>(*why) : kNoDoubt, std::memory_order_relaxed);
   weak.store(pipeline_.rendered_fraction().weak(), std::memory_order_relaxed);
   fault.store(pipeline_.limiter().fault(), std::memory_order_relaxed);
 }

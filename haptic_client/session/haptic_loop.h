@@ -56,10 +56,11 @@ class HapticLoop {
   /// law's force (N) and the gain of passivity in the newest tick.
   std::atomic<bool> weak{false};
   std::atomic<double> law_newton{0}, gain{1};
-  std::atomic<bool> paused{false};            ///< the simulation is
-  std::atomic<std::optional<Doubt>> doubt{};  ///< why a flagged force fades; none: it does not
-  std::atomic<bool> rearm{false};             ///< set it to clear a latched fault
-  Heartbeat* heartbeat = nullptr;             ///< beats at every tick; set it before `run`
+  std::atomic<bool> paused{false};  ///< the simulation is
+  static constexpr int kNoDoubt = -1;
+  std::atomic<int> doubt{kNoDoubt};  ///< the `Doubt` for which a flagged force fades
+  std::atomic<bool> rearm{false};    ///< set it to clear a latched fault
+  Heartbeat* heartbeat = nullptr;    ///< beats at every tick; set it before `run`
 
  private:
   TickResult tick() noexcept;

@@ -130,7 +130,8 @@ void HeldTool::report_weakness() {
 /// A force that the simulation does not stand behind is not rendered for long, and whoever holds the device
 /// should know why.
 void HeldTool::report_doubt() {
-  const std::optional<Doubt> doubt = loop_.doubt;
+  const int why = loop_.doubt.load(std::memory_order_relaxed);
+  const auto doubt = why == HapticLoop::kNoDoubt ? std::nullopt : std::optional(static_cast<Doubt>(why));
   if (doubt && doubt != doubt_) {
     log::warning(
         "{}the force is not settled: {}; it goes to zero (the server flags its answers, and says more)",
