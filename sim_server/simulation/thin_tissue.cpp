@@ -31,7 +31,7 @@ std::vector<std::vector<int>> neighbours_of(const TetMesh& mesh) {
   }
   for (std::vector<int>& some : neighbours) {
     std::ranges::sort(some);
-    some.erase(std::ranges::unique(some).begin(), some.end());
+    some.erase(std::unique(some.begin(), some.end()), some.end());
   }
   return neighbours;
 }
@@ -109,7 +109,7 @@ ThinTissue::ThinTissue(const TetMesh& mesh, const Surface& surface, const std::v
       return (mesh.vertices[v] - mesh.vertices[vertex]).norm() <= kEdges * edges[k];
     };
     const auto nearest =
-        static_cast<std::size_t>(std::ranges::partition(near, is_nearest).begin() - near.begin());
+        static_cast<std::size_t>(std::partition(near.begin(), near.end(), is_nearest) - near.begin());
     std::ranges::copy_if(normals[vertex], std::back_inserter(thin_[k]), [&](const Vec3& normal) {
       return is_opposed(normal, near.first(nearest), normals) ||
              (is_opposed(normal, near, normals) && is_bar(normal, near, normals));
