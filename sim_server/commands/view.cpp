@@ -4,7 +4,6 @@
 #include <fmt/core.h>
 #include <limits>
 #include <memory>
-#include <ranges>
 #include <span>
 #include <thread>
 
@@ -50,9 +49,9 @@ void show_captured(const CapturedAnswer& answer, Picture& picture) {
 /// Returns the tools that sessions hold. Where several held one, it is that of the longest.
 std::vector<Tool> tools_of(std::span<const CapturedForces> sessions) {
   std::vector<Tool> tools;
-  for (const CapturedForces& session : std::views::reverse(sessions)) {
-    if (session.tool >= tools.size()) tools.resize(session.tool + 1U);
-    tools[session.tool] = {.radius = session.tool_radius};
+  for (auto session = sessions.rbegin(); session != sessions.rend(); ++session) {
+    if (session->tool >= tools.size()) tools.resize(session->tool + 1U);
+    tools[session->tool] = {.radius = session->tool_radius};
   }
   return tools;
 }

@@ -42,7 +42,8 @@ std::optional<StudiedErrors> pressed_in(const Trace& trace) {
 
 void keep_studied(const SetupCache& cache, const Scene& scene, const StudiedErrors& studied, double seconds) {
   Eigen::RowVectorXd row(kNumbers);
-  row << studied.errors.mesh.percent, studied.errors.time_step.percent, studied.pressed.min.transpose(),
+  row << static_cast<double>(studied.errors.mesh.percent),
+      static_cast<double>(studied.errors.time_step.percent), studied.pressed.min.transpose(),
       studied.pressed.max.transpose(), studied.most_newton;
   cache.keep(key_of_study(scene), seconds, row);
 }
