@@ -83,8 +83,8 @@ struct palpate_session {
   ClientConfig config_;
   Pipeline pipeline_;
   HapticMailboxes mailboxes_;
-  std::array<protocol::SurfacePage, 32> pages_;  // of one tick
-  protocol::ForceSample newest_;                 // that the law used; number 0: none
+  Arrivals arrivals_;             // of one tick
+  protocol::ForceSample newest_;  // that the law used; number 0: none
   protocol::UdpSocket socket_;
   NetLink link_;
   std::jthread net_thread_;
@@ -140,13 +140,9 @@ protocol::ToolState palpate_session::sense(const palpate_tool_state& published) 
 void palpate_session::tick(const palpate_tool_state& published, palpate_rendered& rendered) noexcept {
   if (rearm.exchange(false, std::memory_order_relaxed)) pipeline_.rearm();
   const protocol::ToolState tool = sense(published);
-  protocol::ForceSample sample;
-  const bool fresh = mailboxes_.force.read(sample);
-  std::size_t pages = 0;
-  while (pages < pages_.size() && mailboxes_.pages.pop(pages_[pages])) ++pages;
-  pipeline_.bound_pages(mailboxes_.pages_hz.load(std::memory_order_relaxed));
-  const TickResult result = pipeline_.render(tool, fresh ? &sample : nullptr, std::span(pages_).first(pages));
-  if (result.used) newest_ = sample;
+  arrivals_.take(mailboxes_, pipeline_);
+  const TickResult result = pipeline_.render(tool, arrivals_.sample(), arrivals_.pages());
+  if (result.used) newest_ = *arrivals_.sample();
   mailboxes_.tool.push(result.tool);
   mailboxes_.bell.ring();
   report(result, rendered);

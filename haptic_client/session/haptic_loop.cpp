@@ -38,19 +38,21 @@ void HapticLoop::run(const std::stop_token& stop) noexcept {
   if (heartbeat != nullptr) heartbeat->end(at_rest);
 }
 
+void Arrivals::take(HapticMailboxes& mailboxes, Pipeline& pipeline) noexcept {
+  fresh_ = mailboxes.force.read(sample_);
+  for (count_ = 0; count_ < pages_.size() && mailboxes.pages.pop(pages_[count_]);) ++count_;
+  pipeline.bound_pages(mailboxes.pages_hz.load(std::memory_order_relaxed));
+}
+
 TickResult HapticLoop::tick() noexcept {
   if (rearm.exchange(false, std::memory_order_relaxed)) pipeline_.rearm();
   if (protocol::Pointer pointer; mailboxes_.pointer.read(pointer))
     device_.aim(pipeline_.workspace().place_to_device(pointer.p_W), pointer.buttons);
   const DeviceReading reading = device_.read(now());
-  protocol::ForceSample sample;
-  const bool fresh = mailboxes_.force.read(sample);
-  if (fresh) telemetry_.want((sample.flags & protocol::ForceSample::kRequestsTelemetry) != 0);
-  std::size_t pages = 0;
-  while (pages < pages_.size() && mailboxes_.pages.pop(pages_[pages])) ++pages;
-  pipeline_.bound_pages(mailboxes_.pages_hz.load(std::memory_order_relaxed));
-  const TickResult result =
-      pipeline_.tick(reading, fresh ? &sample : nullptr, std::span(pages_).first(pages));
+  arrivals_.take(mailboxes_, pipeline_);
+  if (const protocol::ForceSample* const sample = arrivals_.sample())
+    telemetry_.want((sample->flags & protocol::ForceSample::kRequestsTelemetry) != 0);
+  const TickResult result = pipeline_.tick(reading, arrivals_.sample(), arrivals_.pages());
   device_.write(result.f_D);
   if (!mailboxes_.tool.push(result.tool)) ++stats_.unsent;
   mailboxes_.bell.ring();

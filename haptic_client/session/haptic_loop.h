@@ -1,5 +1,7 @@
 #pragma once
+#include <array>
 #include <atomic>
+#include <span>
 #include <stop_token>
 
 #include "common/doorbell.h"
@@ -24,6 +26,22 @@ struct HapticMailboxes {
   std::atomic<double> pages_hz{-1};            // network -> haptic
   SpscRing<protocol::Telemetry> telemetry{4};  // haptic -> network
   Doorbell bell;
+};
+
+/// Messages of the network thread that wait for a tick. Haptic thread.
+class Arrivals {
+ public:
+  /// Takes them out of the mailboxes, and tells the pipeline how many pages it may request.
+  void take(HapticMailboxes& mailboxes, Pipeline& pipeline) noexcept;
+  /// Newest force of the last `take`; null: none came.
+  const protocol::ForceSample* sample() const noexcept { return fresh_ ? &sample_ : nullptr; }
+  std::span<const protocol::SurfacePage> pages() const noexcept { return std::span(pages_).first(count_); }
+
+ private:
+  protocol::ForceSample sample_;
+  bool fresh_ = false;
+  std::array<protocol::SurfacePage, 32> pages_;
+  std::size_t count_ = 0;
 };
 
 /// Measurements of the loop; read them when the loop has ended.
@@ -58,7 +76,7 @@ class HapticLoop {
   std::atomic<double> law_newton{0}, gain{1};
   std::atomic<bool> paused{false};  ///< the simulation is
   static constexpr int kNoDoubt = -1;
-  std::atomic<int> doubt{kNoDoubt};  ///< the `Doubt` for which a flagged force fades
+  std::atomic<int> doubt{kNoDoubt};  ///< the `Doubt` for which a flagged force fades, if one does
   std::atomic<bool> rearm{false};    ///< set it to clear a latched fault
   Heartbeat* heartbeat = nullptr;    ///< beats at every tick; set it before `run`
 
@@ -73,7 +91,7 @@ class HapticLoop {
   Observation& observation_;
   TelemetryMaker& telemetry_;
   Time period_;
-  std::array<protocol::SurfacePage, 32> pages_;  // of one tick
+  Arrivals arrivals_;  // of one tick
   HapticLoopStats stats_;
 };
 

@@ -34,10 +34,10 @@ constexpr Time kGrows = 10ms;                 // from one look to the next: the 
 constexpr Time kFalls = 5ms;                  // the queue empties
 constexpr int kLooksThatGrow = 2;             // a way that becomes longer at once grows in one
 constexpr double kMostLost = 0.1;             // share of datagrams, in a look
-constexpr Time kStallEnds = 50ms;  // after the first look at what it held back, which comes at once
-constexpr Time kSettles = 300ms;   // after a change, until its effect shows
-constexpr Time kStays = 1500ms;    // as long below full: what is sent fills the link
-constexpr Time kCalm = 25ms;       // in a queue: no congestion
+constexpr Time kStallEnds = 50ms;             // once it is over, all that it held back has come by then
+constexpr Time kSettles = 300ms;              // after a change, until its effect shows
+constexpr Time kStays = 1500ms;               // as long below full: what is sent fills the link
+constexpr Time kCalm = 25ms;                  // in a queue: no congestion
 constexpr Time kCalmAfterFailure = 10s, kLongestCalm = 300s;
 constexpr Time kTrial = 10s;  // congestion so soon after the level went up: it went too far
 
