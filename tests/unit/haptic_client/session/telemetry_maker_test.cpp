@@ -93,13 +93,13 @@ TEST_CASE("telemetry: what is felt, by which law, on which device, and the laws 
   REQUIRE(newest != nullptr);
   CHECK(names == std::array<std::string, 8>{"constant", "linear_time", "", "extrapolation", "outages",
                                             "fades", "limits", "worst tick"});
-  CHECK_THAT(errors[0], WithinAbs(0.0F, 1e-3F));
+  CHECK_THAT(errors[0], WithinAbs(0, 1e-3));
   // Behind the laws: the mesh, and a soft start of 1 s in the 4 s so far.
   CHECK_THAT(errors[2], WithinRel(30 + 100 * 0.5F / 4, 0.02F));
-  CHECK_THAT(errors[3], WithinAbs(0.0F, 1e-3F));
-  CHECK_THAT(errors[4], WithinAbs(0.0F, 1e-3F));
+  CHECK_THAT(errors[3], WithinAbs(0, 1e-3));
+  CHECK_THAT(errors[4], WithinAbs(0, 1e-3));
   CHECK_THAT(errors[5], WithinRel(100 * 0.5F / 4, 0.08F));
-  CHECK_THAT(errors[6], WithinAbs(0.0F, 1e-3F));
+  CHECK_THAT(errors[6], WithinAbs(0, 1e-3));
   CHECK_THAT(errors[7],
              WithinRel(99.8F, 1e-3F));  // in the first tick of the soft start, 2 ms into its second
   CHECK(text(newest->device) == "falcon");
