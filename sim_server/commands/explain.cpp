@@ -147,7 +147,8 @@ BuiltPart material_part(const Scene& scene, const ErrorOfForce& errors, double s
   BuiltPart row{"material", "not used", scene.material_where};
   if (!model_of(scene.deformation).deforms()) return row;
   row.detail = fmt::format(
-      "kept: the error of the force by the mesh, {} presses on \"p1\" and \"p2\"{}", errors.presses(),
+      "kept: the error of the force by the mesh, {} presses on \"p1\" and \"p2\"{}{}", errors.presses(),
+      errors.why_no_press().empty() ? "" : fmt::format(": {}", errors.why_no_press()),
       scene.material->locks() ? "; \"p1\" locks at this poisson_ratio: take \"p2\"" : "");
   row.bytes = errors.bytes();
   row.setup_ms = setup_ms;

@@ -131,14 +131,28 @@ bool ContactFinder::try_gather(std::span<const Vec3> positions, const Vec3& p, c
     const Triangle& t = triangles_[near];
     const Vec3 &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
     if (!may_reach(a, b, c, p, q, reach) || !reaches(a, b, c, p, q, reach)) continue;
-    Triangle local;
-    for (int i = 0; i < 3; ++i) local[i] = slot_of(t[i]);
-    fits = static_cast<int>(patch.triangles.size()) < max_triangles_ && *std::ranges::min_element(local) >= 0;
+    fits = add(t, patch);
     if (!fits) break;
-    patch.triangles.push_back(local);
   }
   for (const int vertex : vertices_) slot_of_vertex_[vertex] = -1;
   return fits;
+}
+
+/// Puts a triangle into the patch. Returns false if it does not fit.
+bool ContactFinder::add(const Triangle& triangle, ContactPatch& patch) noexcept {
+  Triangle local;
+  for (int i = 0; i < 3; ++i) local[i] = slot_of(triangle[i]);
+  const bool fits =
+      static_cast<int>(patch.triangles.size()) < max_triangles_ && *std::ranges::min_element(local) >= 0;
+  if (fits) patch.triangles.push_back(local);
+  return fits;
+}
+
+void ContactFinder::take(std::span<const Triangle> triangles, ContactPatch& patch) noexcept {
+  patch.triangles.clear();
+  vertices_.clear();
+  for (const Triangle& t : triangles) add(t, patch);
+  for (const int vertex : vertices_) slot_of_vertex_[vertex] = -1;
 }
 
 /// Adds, of those between `reach` and `more` away, for all of which there is no room, the nearest, and of

@@ -37,6 +37,8 @@ class ContactFinder {
   void gather(std::span<const Vec3> positions, std::span<const Vec3> free, const Vec3& p, const Vec3& q,
               double reach, ContactPatch& patch, std::span<const int> moved = {}) noexcept;
   std::span<const int> vertices() const { return vertices_; }
+  /// Puts these triangles of the surface into the patch instead, as many as fit.
+  void take(std::span<const Triangle> triangles, ContactPatch& patch) noexcept;
 
   /// True if `p` lies inside the closed surface: its winding number, which counts the sheets that the ray
   /// along x leaves, less those that it enters. O(triangles), of which a few are looked at.
@@ -71,6 +73,7 @@ class ContactFinder {
  private:
   /// Patch node of a surface vertex, given one if it has none yet; -1 when there is no room.
   int slot_of(int vertex) noexcept;
+  bool add(const Triangle& triangle, ContactPatch& patch) noexcept;
   bool try_gather(std::span<const Vec3> positions, const Vec3& p, const Vec3& q, double reach,
                   ContactPatch& patch) noexcept;
 

@@ -56,11 +56,16 @@ Grip::Grip(const ToolSettings& tool, std::span<const Vec3> rest, std::span<const
   }
 }
 
-void Grip::change_surface(std::span<const Triangle> touchable, const std::function<bool(int)>& on_surface) {
+void Grip::change_surface(const SurfaceChange& change, std::span<const Triangle> touchable) {
   touchable_ = corners_of(touchable);
+  for (const Split& split : change.splits) {
+    const auto held = std::ranges::find(vertices_, split.vertex);
+    if (held != vertices_.end())
+      hold(split.copy, Vec3(offsets_[static_cast<std::size_t>(held - vertices_.begin())]));
+  }
   std::size_t stored = 0;
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
-    if (!on_surface(vertices_[i])) continue;
+    if (!change.on_surface(vertices_[i])) continue;
     vertices_[stored] = vertices_[i];
     offsets_[stored++] = offsets_[i];
   }
@@ -73,16 +78,20 @@ void Grip::close(const ToolPose& pose, std::span<const Vec3> positions) noexcept
   closed_at_ = pose;
   for (const int vertex : touchable_) {
     const Vec3 offset = positions[vertex] - pose.p_W;
-    if (offset.norm() > reach_) continue;
-    if (vertices_.size() == max_nodes_) {  // the nearest stay, in their order
-      const auto furthest = std::ranges::max_element(offsets_, {}, &Vec3::norm) - offsets_.begin();
-      if (!(offset.norm() < offsets_[static_cast<std::size_t>(furthest)].norm())) continue;
-      vertices_.erase(vertices_.begin() + furthest);
-      offsets_.erase(offsets_.begin() + furthest);
-    }
-    vertices_.push_back(vertex);
-    offsets_.push_back(offset);
+    if (offset.norm() <= reach_) hold(vertex, offset);
   }
+}
+
+/// Where there is no room for one more, the nearest stay, in their order.
+void Grip::hold(int vertex, const Vec3& offset) noexcept {
+  if (vertices_.size() == max_nodes_) {
+    const auto furthest = std::ranges::max_element(offsets_, {}, &Vec3::norm) - offsets_.begin();
+    if (!(offset.norm() < offsets_[static_cast<std::size_t>(furthest)].norm())) return;
+    vertices_.erase(vertices_.begin() + furthest);
+    offsets_.erase(offsets_.begin() + furthest);
+  }
+  vertices_.push_back(vertex);
+  offsets_.push_back(offset);
 }
 
 void Grip::open() noexcept {

@@ -1,9 +1,9 @@
 #pragma once
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <vector>
 
+#include "sim_server/contact/surface_change.h"
 #include "sim_server/contact/tissue.h"
 #include "sim_server/scene/scene.h"
 
@@ -30,9 +30,9 @@ class Grip {
   Grip(const ToolSettings& tool, std::span<const Vec3> rest, std::span<const std::array<int, 3>> touchable,
        int max_nodes);
 
-  /// Tissue has been removed: it lets go of vertices that are not `on_surface` any more. Allocates.
-  void change_surface(std::span<const std::array<int, 3>> touchable,
-                      const std::function<bool(int)>& on_surface);
+  /// Holds the copies of held vertices, too, as far as there is room, and lets go of vertices that left the
+  /// surface. Allocates.
+  void change_surface(const SurfaceChange& change, std::span<const std::array<int, 3>> touchable);
 
   /// Sets which of the device's buttons are pressed.
   void set_buttons(std::uint16_t buttons) noexcept { pressed_ = (buttons & buttons_) != 0; }
@@ -63,6 +63,7 @@ class Grip {
   std::size_t bytes() const;
 
  private:
+  void hold(int vertex, const Vec3& offset) noexcept;
   double misfit(const ToolPose& pose, const ToolTissue& tissue, std::span<const VertexLoad> own);
   bool take_compliance(const ToolTissue& tissue);
   bool factor(const ToolTissue& tissue);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "sim_server/contact/surface_change.h"
+
 namespace palpate::sim {
 namespace {
 
@@ -43,12 +45,14 @@ void Tissue::reserve(std::span<const int> most_loads, std::span<const double> ra
   }
 }
 
-void Tissue::drop_loads(const std::function<bool(int)>& on_surface) {
-  const auto removed = [&](const VertexLoad& load) { return !on_surface(load.vertex); };
+void Tissue::change_surface(const SurfaceChange& change) {
   for (ToolLoads& tool : tools_) {
-    tool.others -=
-        static_cast<std::size_t>(std::ranges::count_if(std::span(tool.loads).first(tool.others), removed));
-    std::erase_if(tool.loads, removed);
+    std::vector<VertexLoad> own(tool.own().begin(), tool.own().end());
+    tool.loads.resize(tool.others);
+    change.apply_to(tool.loads);
+    change.apply_to(own);
+    tool.others = tool.loads.size();
+    tool.loads.insert(tool.loads.end(), own.begin(), own.end());
   }
 }
 

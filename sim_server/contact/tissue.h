@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -10,6 +9,7 @@
 namespace palpate::sim {
 
 class ToolTissue;
+struct SurfaceChange;
 
 /// The tissue as all tools share it, with the loads of each. Positions are those of the surface vertices, m,
 /// world. Only set-up allocates; what the model throws passes through. One thread.
@@ -47,8 +47,8 @@ class Tissue {
   void separate(std::size_t tool) noexcept;
   /// The tool went along with the organ by `motion` (m): so did what it last met.
   void carry(std::size_t tool, const Vec3& motion) noexcept { tools_[tool].carried += motion; }
-  /// Tissue has been removed: the loads on vertices that are not `on_surface` any more go with it.
-  void drop_loads(const std::function<bool(int)>& on_surface);
+  /// Lets the loads of all tools follow a change of the surface (`SurfaceChange::apply_to`). Allocates.
+  void change_surface(const SurfaceChange& change);
   /// Returns the tissue as this tool met it last: what the others have put on it since is not looked at.
   ToolTissue known_to(std::size_t tool);
   /// Replaces the loads of one tool; the tissue follows at `apply_all_loads`.

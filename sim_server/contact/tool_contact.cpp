@@ -74,19 +74,29 @@ ToolContact::ToolContact(const ToolSettings& tool, std::span<const Vec3> rest, c
   nodes_were_.reserve(static_cast<std::size_t>(finder_.max_nodes()));
 }
 
-void ToolContact::change_surface(std::span<const Vec3> rest, const Surface& surface,
-                                 std::vector<Triangle> touchable,
-                                 const std::function<bool(int)>& on_surface) {
-  if (grip_) grip_->change_surface(touchable, on_surface);
-  if (holds()) {  // nothing gathers its patch again
-    const std::span<const int> nodes = finder_.vertices();
-    std::vector<Triangle> sorted = touchable;
-    std::ranges::sort(sorted);
-    std::erase_if(patch_.triangles, [&](const Triangle& t) {
-      return !std::ranges::binary_search(sorted, Triangle{nodes[t[0]], nodes[t[1]], nodes[t[2]]});
-    });
+/// Returns the touchable triangles that were in its patch before, when their corners were not yet copies.
+std::vector<Triangle> ToolContact::left_of_patch(const SurfaceChange& change,
+                                                 std::span<const Triangle> touchable) const {
+  const std::span<const int> nodes = finder_.vertices();
+  std::vector<Triangle> before;
+  for (const Triangle& t : patch_.triangles) before.push_back({nodes[t[0]], nodes[t[1]], nodes[t[2]]});
+  std::ranges::sort(before);
+  const std::map<int, int> origins = change.origins();
+  std::vector<Triangle> left;
+  for (const Triangle& t : touchable) {
+    Triangle was = t;
+    for (int& corner : was) {
+      if (const auto origin = origins.find(corner); origin != origins.end()) corner = origin->second;
+    }
+    if (std::ranges::binary_search(before, was)) left.push_back(t);
   }
-  finder_.change_surface(rest, touchable.empty() ? touchable : surface.triangles, touchable);
+  return left;
+}
+
+void ToolContact::change_surface(const SurfaceChange& change, std::vector<Triangle> touchable) {
+  if (grip_) grip_->change_surface(change, touchable);
+  if (holds()) finder_.take(left_of_patch(change, touchable), patch_);  // nothing gathers it again
+  finder_.change_surface(change.rest, touchable.empty() ? touchable : change.surface.triangles, touchable);
   filled_.clear();
   predictor_.changes.clear();
   stored_predictor_.changes.clear();
@@ -94,9 +104,9 @@ void ToolContact::change_surface(std::span<const Vec3> rest, const Surface& surf
     trend->travel.surface.clear();
     trend->forces.clear();
   }
-  std::erase_if(stored_loads_, [&](const VertexLoad& load) { return !on_surface(load.vertex); });
+  change.apply_to(stored_loads_);
   for (State* const state : {&now_, &stored_}) {
-    if (state->side >= 0 && !on_surface(state->side)) state->side = -1;
+    if (state->side >= 0 && !change.on_surface(state->side)) state->side = -1;
   }
 }
 

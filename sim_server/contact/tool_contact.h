@@ -1,8 +1,8 @@
 #pragma once
-#include <functional>
 
 #include "sim_server/contact/contact_finder.h"
 #include "sim_server/contact/grip.h"
+#include "sim_server/contact/surface_change.h"
 #include "sim_server/contact/tissue.h"
 
 namespace palpate::sim {
@@ -52,10 +52,9 @@ class ToolContact {
     filled_.clear();  // the patch refers to these vertices, and to the compliance of the model
   }
 
-  /// Tissue has been removed: these are the triangles now, of the same vertices, of which those that are not
-  /// `on_surface` hang on nothing. Allocates.
-  void change_surface(std::span<const Vec3> rest, const Surface& surface, std::vector<Triangle> touchable,
-                      const std::function<bool(int)>& on_surface);
+  /// Takes over a surface that was cut, of which it can touch these triangles. What it holds and presses
+  /// stays so on both sides of a cut. Allocates.
+  void change_surface(const SurfaceChange& change, std::vector<Triangle> touchable);
 
   /// Sets which of the device's buttons are pressed, also while the tool is lifted: the next `advance_to`
   /// grasps, or releases.
@@ -213,6 +212,7 @@ class ToolContact {
     std::vector<Moved> surface;   // near the tool, in contact; else none
   };
 
+  std::vector<Triangle> left_of_patch(const SurfaceChange& change, std::span<const Triangle> touchable) const;
   static bool is_tame(const ToolPose& pose) noexcept;
   void move_to(const ToolPose& pose, ToolTissue tissue);
   void solve_grasp(const ToolPose& pose, ToolTissue tissue);

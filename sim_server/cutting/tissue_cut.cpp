@@ -183,6 +183,7 @@ void TissueCut::follow_rest(const Separated& separated, std::size_t tool, CutOrg
     }
   }
   for (const Split& split : separated.parting.splits) {
+    splits_.push_back({remaining.number_of(split.vertex), remaining.number_of(split.copy)});
     update_rest(split.copy);
     for (std::optional<Blade>& each : blades_) {
       if (each && each->was) each->were[number(split.copy)] = each->were[number(split.vertex)];
@@ -214,12 +215,14 @@ void TissueCut::resist(std::size_t tool, const ToolContact& contact, double dt, 
 /// Gives the tools the triangles of the surface as it is now.
 void TissueCut::change_surface(CutOrgan& organ) {
   const CutMesh& remaining = resection_.remaining();
-  const auto on_surface = [&remaining](int vertex) { return remaining.on_surface(vertex); };
-  organ.tissue.drop_loads(on_surface);
+  const SurfaceChange change{organ.rest, organ.surface,
+                             [&remaining](int v) { return remaining.on_surface(v); }, splits_};
+  organ.tissue.change_surface(change);
   auto touchable = touchable_by(tools_, organ.surface, organ.mesh);
   for (std::size_t i = 0; i < tools_.size(); ++i)
-    organ.tools[i].change_surface(organ.rest, organ.surface, std::move(touchable[i]), on_surface);
+    organ.tools[i].change_surface(change, std::move(touchable[i]));
   touchable_version_ = resection_.version();
+  splits_.clear();
 }
 
 void TissueCut::end_step(std::span<const ToolInput> inputs, double time, double dt,

@@ -113,6 +113,7 @@ class TissueCut {
   std::vector<ClientModel::Tool> asking_ = {};  // tools whose clients ask for the surface
   std::shared_ptr<const PublishedSurface> published_ = {};
   std::uint32_t touchable_version_ = 0;  // of the resection: whose surface the tools touch
+  std::vector<Split> splits_ = {};       // of surface vertices since then, in order
   std::vector<ResectionRow> log_ = {};
   std::vector<Removal> removed_ = {};
   std::size_t done_ = 0;  // of the planned removals

@@ -1,6 +1,7 @@
 #include "sim_server/simulation/element_trial.h"
 
 #include <algorithm>
+#include <fmt/core.h>
 #include <functional>
 #include <new>
 
@@ -139,12 +140,18 @@ Simulation quadratic_near(Scene scene, const TetMesh& mesh, std::span<const Pres
   return Simulation(scene, mesh);
 }
 
-std::vector<ElementTrial> press_both(const Scene& scene, const TetMesh& mesh) {
+ElementTrials press_both(const Scene& scene, const TetMesh& mesh) {
   const double radius = scene.tools[0].shape.radius;
   Simulation linear(scene, mesh);
   std::vector<Press> places = places_to_press(scene, linear);
   bound_reach(places, linear, radius);
-  if (places.empty()) return {};
+  if (places.empty()) {
+    return {
+        {},
+        fmt::format("the first [[tool]] reaches more than {} vertices at once, too many to press on \"p2\"; "
+                    "take a smaller `radius` or a coarser mesh",
+                    kMostInReach)};
+  }
   Simulation quadratic = quadratic_near(scene, mesh, places);
   std::vector<ElementTrial> trials;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -155,21 +162,46 @@ std::vector<ElementTrial> press_both(const Scene& scene, const TetMesh& mesh) {
     trials.push_back({.percent = 100 * (*by_linear - *right).norm() / right->norm(),
                       .loads = {loads.begin(), loads.end()}});
   }
-  return trials;
+  if (trials.empty()) {
+    return {
+        {},
+        fmt::format("contact settled at none of the {} places that were pressed; take a mesh with smaller "
+                    "elements than the `radius` of the first [[tool]]",
+                    places.size())};
+  }
+  return {std::move(trials), {}};
+}
+
+/// Returns why a scene is not pressed on; empty: it is.
+std::string why_untried(const Scene& scene, const TetMesh& mesh) {
+  if (scene.material->element != ElementKind::kLinear)
+    return "they compare \"p1\" with \"p2\", and this scene does not have \"p1\"; nothing to change";
+  if (scene.cutting)
+    return "tissue that can be cut is not pressed on; explain a copy of the scene without [cutting]";
+  if (scene.tools.front().grasps())
+    return "the first [[tool]] holds tissue; list a [[tool]] that presses first";
+  if (scene.flies()) return "nothing holds the organ in place; add a [[fixed]]";
+  if (reachable_vertices(boundary_surface(mesh), mesh, std::span(scene.tools).first(1)).empty())
+    return "the first [[tool]] reaches no surface; move its `reach` to where it presses";
+  const MeshInfo info = describe(mesh);
+  const auto nodes = info.vertices + info.edges;
+  if (nodes <= kMostNodes) return {};
+  return fmt::format(
+      "\"p2\" would have {} nodes on this mesh, and up to {} are tried; take a coarser mesh, or "
+      "measure with `sim_server study`",
+      nodes, kMostNodes);
 }
 
 }  // namespace
 
-std::vector<ElementTrial> try_elements(const Scene& scene, const TetMesh& mesh) {
-  if (scene.cutting || scene.tools.front().grasps() || scene.flies()) return {};
-  const MeshInfo info = describe(mesh);
-  if (info.vertices + info.edges > kMostNodes) return {};
+ElementTrials try_elements(const Scene& scene, const TetMesh& mesh) {
+  if (std::string why = why_untried(scene, mesh); !why.empty()) return {{}, std::move(why)};
   try {
     return press_both(at_rest(scene), mesh);
-  } catch (const Error&) {  // nothing is known then, as without a trial
-    return {};
+  } catch (const Error& error) {  // nothing is known then, as without a trial
+    return {{}, fmt::format("tissue at rest cannot be set up: {}", error.what())};
   } catch (const std::bad_alloc&) {
-    return {};
+    return {{}, "memory is short; take a coarser mesh"};
   }
 }
 

@@ -24,7 +24,7 @@ ErrorOfForce::ErrorOfForce(const Scene& scene, const Simulation& simulation,
                            const std::optional<StudiedErrors>& studied)
     : rest_(simulation.rest()) {
   const bool deforms = scene.material && model_of(scene.deformation).deforms();
-  if (deforms && scene.material->element == ElementKind::kLinear) add_trials(scene, simulation);
+  if (deforms) add_trials(scene, simulation);
   for (const ToolSettings& tool : scene.tools) {
     const DiscretisationErrors errors = those_by_method({}, deforms, steps_matter(scene, tool));
     std::optional<ElementKind> element;
@@ -45,11 +45,12 @@ ErrorOfForce::ErrorOfForce(const Scene& scene, const Simulation& simulation,
               .most_newton = studied->most_newton};
 }
 
-/// Of linear elements.
 void ErrorOfForce::add_trials(const Scene& scene, const Simulation& simulation) {
-  thin_.emplace(simulation.mesh(), simulation.surface(), fixed_vertices(scene, simulation.mesh()));
-  if (simulation.touchable(0).empty()) return;
-  for (const ElementTrial& trial : try_elements(scene, simulation.mesh())) {
+  if (scene.material->element == ElementKind::kLinear)
+    thin_.emplace(simulation.mesh(), simulation.surface(), fixed_vertices(scene, simulation.mesh()));
+  ElementTrials trials = try_elements(scene, simulation.mesh());
+  why_no_press_ = std::move(trials.why_none);
+  for (const ElementTrial& trial : trials.presses) {
     if (const auto load = sum_of_loads(trial.loads))
       trials_.push_back({*load, thin_->bears(trial.loads), trial.percent});
   }

@@ -46,6 +46,8 @@ class ErrorOfForce {
   }
   /// Number of places where set-up has pressed on both kinds of elements.
   std::size_t presses() const noexcept { return trials_.size(); }
+  /// Why there are none, and what helps, for a user; empty where there are some, or elements do not matter.
+  const std::string& why_no_press() const noexcept { return why_no_press_; }
   std::size_t bytes() const noexcept;
   /// Returns the mean errors over all steps so far, each by the size of its force.
   DiscretisationErrors of_all_steps(std::size_t tool) const noexcept { return tools_[tool].steps.mean(); }
@@ -84,6 +86,7 @@ class ErrorOfForce {
   std::optional<Studied> studied_;  // with the first tool
   std::optional<ThinTissue> thin_;  // of linear elements
   std::vector<Trial> trials_;       // of them
+  std::string why_no_press_;
 };
 
 }  // namespace palpate::sim

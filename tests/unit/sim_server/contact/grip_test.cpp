@@ -223,8 +223,25 @@ TEST_CASE("of a patch that a tool holds a cut leaves the triangles that are stil
   std::vector<Triangle> touchable = surface.triangles;
   std::erase_if(touchable, [&](const Triangle& t) { return has(t, gone); });
   const Surface cut{surface.vertices, touchable, surface.per_face};
-  tool.change_surface(rest, cut, touchable, [&](int v) { return v != gone; });
+  tool.change_surface({rest, cut, [&](int v) { return v != gone; }}, touchable);
   CHECK(tool.holds());
   CHECK(strain(gone) == 0);
   for (std::size_t i = 0; i < left.size(); ++i) CHECK(strain(left[i]) == before[i]);
+}
+
+TEST_CASE("loads follow a cut: a vertex and its copies bear what the vertex bore, in their order") {
+  const Surface surface;
+  const std::vector<Split> splits{{3, 10}, {5, 11}, {10, 12}};
+  const SurfaceChange change{{}, surface, [](int v) { return v != 5; }, splits};
+  const Vec3 force(4, -8, 12);
+  std::vector<VertexLoad> loads{{5, Vec3(2, 0, 0)}, {3, force}, {7, Vec3(0, 1, 0)}};
+  change.apply_to(loads);
+  const std::vector<std::pair<int, Vec3>> right{
+      {3, force / 2}, {7, Vec3(0, 1, 0)}, {10, force / 4}, {11, Vec3(1, 0, 0)}, {12, force / 4}};
+  REQUIRE(loads.size() == right.size());
+  for (std::size_t i = 0; i < right.size(); ++i) {
+    CHECK(loads[i].vertex == right[i].first);
+    CHECK(loads[i].force == right[i].second);
+  }
+  CHECK(change.origins() == std::map<int, int>{{10, 3}, {11, 5}, {12, 3}});
 }

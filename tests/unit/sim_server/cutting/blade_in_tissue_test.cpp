@@ -163,6 +163,66 @@ void check_halves_part(Scene scene) {
   for (int i = 0; i < 120; ++i) held = go(0.04, grip + Vec3(4e-3 + 1e-4 * i, 0, 0), false);
   CHECK(held < 0.05 * pulled);
 }
+
+/// A block of which jaws hold some of the top, lifted by a millimetre, while a blade goes along x between
+/// them.
+struct HeldWhileCut {
+  Simulation simulation;
+  explicit HeldWhileCut(const Scene& scene) : simulation(with_jaws(scene), shaken_block({8, 4, 8})) {
+    for (int i = 0; i <= 60; ++i) go(-0.025, false, std::min(1.0, i / 30.0));
+  }
+  static Scene with_jaws(Scene scene) {
+    scene.tools[0].blade = Vec3(0, -0.016, 0);
+    scene.tools.push_back(scene.tools[0]);
+    scene.tools[1].blade.reset();
+    scene.tools[1].cut_buttons = 0;
+    scene.tools[1].grasp_place = Vec3(0, 0.001, 0.001);
+    scene.tools[1].shape.radius = 0.008;
+    return scene;
+  }
+  /// The force on the jaws, N, with the tip of the blade above the tissue.
+  Vec3 go(double x, bool cuts, double lifted = 1) {
+    std::vector<ToolInput> inputs(2);
+    inputs[0] = {.pose = ToolPose(Vec3(x, 0.008, 0.001)),
+                 .buttons = static_cast<std::uint16_t>(cuts ? 1 : 0)};
+    inputs[1] = {.pose = ToolPose(Vec3(0, 0.001 + 1e-3 * lifted, 0.001))};
+    return simulation.step(inputs, kStep)[1].force;
+  }
+  std::vector<int> held() const {
+    const std::span<const int> vertices = simulation.tool(1).held_vertices();
+    return {vertices.begin(), vertices.end()};
+  }
+  /// Area at rest of the top between vertices that are held, m^2.
+  double held_area() const {
+    double sum = 0;
+    const std::vector<int> in_jaws = held();
+    for (const Triangle& t : simulation.surface().triangles) {
+      const auto at = [&](int v) -> const Vec3& { return simulation.rest()[static_cast<std::size_t>(v)]; };
+      const auto counts = [&](int v) { return at(v).y() > -1e-9 && std::ranges::count(in_jaws, v) > 0; };
+      if (std::ranges::all_of(t, counts)) sum += (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])).norm() / 2;
+    }
+    return sum;
+  }
+  /// Vertices of the surface where these are at rest, beside them.
+  std::vector<int> copies_of(const std::vector<int>& vertices) const {
+    std::vector<int> copies;
+    for (int v = 0; v < static_cast<int>(simulation.rest().size()); ++v) {
+      const auto is_copy = [&](int of) {
+        return v != of && simulation.rest()[static_cast<std::size_t>(v)] ==
+                              simulation.rest()[static_cast<std::size_t>(of)];
+      };
+      if (simulation.resection()->remaining().on_surface(v) && std::ranges::any_of(vertices, is_copy))
+        copies.push_back(v);
+    }
+    return copies;
+  }
+  /// Strain of what the jaws hold where this vertex is pulled 2 mm out of it; -1: where none is.
+  double strain_with(int vertex) const {
+    std::vector<Vec3> positions(simulation.positions().begin(), simulation.positions().end());
+    if (vertex >= 0) positions[static_cast<std::size_t>(vertex)] += Vec3(0, 2e-3, 0);
+    return simulation.tool(1).surface_strain(positions, simulation.rest());
+  }
+};
 }  // namespace
 
 TEST_CASE("what a blade has parted bears a tool at rest as a body that was never whole") {
@@ -333,6 +393,32 @@ TEST_CASE("implicit: a blade that goes anywhere, beside a hot tip, leaves a body
 TEST_CASE("halves that a blade has cut apart part under traction, and one that is held by nothing falls") {
   check_halves_part(blade_scene("tensor_mass"));
   check_halves_part(implicit_scene(ElasticLaw::kCorotational, Solver::kDirect));
+}
+
+TEST_CASE("jaws hold both sides of the patch that a blade goes through, and both are judged for strain") {
+  for (const Scene& scene : {blade_scene("tensor_mass"), blade_scene("hybrid"),
+                             implicit_scene(ElasticLaw::kLinear, Solver::kDirect)}) {
+    CAPTURE(scene.deformation.model);
+    HeldWhileCut body(scene);
+    const auto held = body.held();
+    const double area = body.held_area();
+    REQUIRE(area > 1e-4);
+    const Vec3 force = body.go(-0.025, false);
+    REQUIRE(force.norm() > 0.1);
+    for (int i = 0; i <= 60; ++i) body.go(-0.025 + 0.05 * i / 60, true);
+    Vec3 after;
+    for (int i = 0; i < 60; ++i) after = body.go(0.025, false);
+    const std::vector<int> copies = body.copies_of(held);
+    REQUIRE(copies.size() > 2);
+    CAPTURE(force.transpose(), after.transpose(), held.size(), copies.size());
+    CHECK(body.held().size() == held.size() + copies.size());
+    CHECK(body.held_area() == Approx(area));
+    CHECK((after - force).norm() < 0.05 * force.norm());
+    for (const int copy : copies) {
+      CHECK(std::ranges::count(body.held(), copy) == 1);
+      CHECK(body.strain_with(copy) > 2 * body.strain_with(-1));
+    }
+  }
 }
 
 TEST_CASE("a run that parts tissue is the same each time") {

@@ -1,5 +1,6 @@
 #include "sim_server/simulation/error_of_force.h"
 
+#include <fmt/core.h>
 #include <functional>
 #include <numbers>
 
@@ -282,10 +283,45 @@ TEST_CASE("error of the force: nothing is tried with a tool that reaches most of
       test::scene_of({.young_modulus = kModulus}, {Vec3(-1, -1, -1), Vec3(1, 1e-4, 1)}, kLarge);
   const TetMesh mesh =
       test::corner_block({0.06, 0.002, 0.06}, {20, 1, 20});  // 882 vertices, 4 times as many nodes
-  CHECK(try_elements(scene, mesh).empty());
+  CHECK(try_elements(scene, mesh).presses.empty());
   Scene small = scene;
   small.tools[0].shape.radius = kRadius;
-  CHECK(try_elements(small, mesh).size() > 1);
+  CHECK(try_elements(small, mesh).presses.size() > 1);
+}
+
+TEST_CASE("error of the force: where nothing is pressed on, the reason is told, and what to change") {
+  const TetMesh mesh = test::corner_block({0.03, 0.01, 0.03}, {6, 2, 6});
+  const Scene scene =
+      test::scene_of({.young_modulus = kModulus}, {Vec3(-1, -1, -1), Vec3(1, 1e-4, 1)}, kRadius);
+  const auto why = [](const Scene& each, const TetMesh& on) {
+    const ElementTrials trials = try_elements(each, on);
+    CHECK(trials.presses.empty() != trials.why_none.empty());
+    return trials.why_none;
+  };
+  using Catch::Contains;
+  CHECK(why(scene, mesh).empty());
+  Scene other = scene;
+  other.material->element = ElementKind::kQuadratic;
+  CHECK_THAT(why(other, mesh), Contains("does not have \"p1\""));
+  other = scene;
+  other.cutting = Cutting{.where = "test"};
+  CHECK_THAT(why(other, mesh), Contains("without [cutting]"));
+  other = scene;
+  other.tools[0].grasp_buttons = 1;
+  CHECK_THAT(why(other, mesh), Contains("a [[tool]] that presses first"));
+  other = scene;
+  other.tools[0].reach = Box{Vec3(5, 5, 5), Vec3(6, 6, 6)};
+  CHECK_THAT(why(other, mesh), Contains("reaches no surface; move its `reach`"));
+  other = scene;
+  other.tools[0].shape.radius = 0.1;
+  CHECK_THAT(why(other, test::corner_block({0.06, 0.002, 0.06}, {20, 1, 20})),
+             Contains("reaches more than 300 vertices at once"));
+  // Nodes of quadratic elements lie on a lattice of half the cells' size: 2 n + 1 along each side.
+  const std::array<int, 3> fine{16, 6, 16};
+  const int nodes = (2 * fine[0] + 1) * (2 * fine[1] + 1) * (2 * fine[2] + 1);
+  CHECK_THAT(why(scene, test::corner_block({0.03, 0.01, 0.03}, fine)),
+             Contains(fmt::format("would have {} nodes on this mesh, and up to 6000 are tried", nodes)) &&
+                 Contains("sim_server study"));
 }
 
 TEST_CASE("error of the force: where a thick beam ends in a thin one, the press on that counts") {
