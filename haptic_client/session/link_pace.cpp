@@ -39,10 +39,6 @@ constexpr Time kSettles = 300ms;              // after a change, until its effec
 constexpr Time kStays = 1500ms;               // as long below full: what is sent fills the link
 constexpr Time kCalm = 25ms;                  // in a queue: no congestion
 constexpr Time kCalmAfterFailure = 10s, kLongestCalm = 300s;
-constexpr double kHeavyLoss = 0.3;  // share of states, in each look of `kLosesFor`
-constexpr Time kLosesFor = 1s, kTries = 600ms;
-constexpr Time kInFlight = 150ms;  // states that left before the level changed
-constexpr double kTells = 2;  // where states fill the link: half as many are lost then, or twice as many come
 constexpr Time kTrial = 10s;  // congestion so soon after the level went up: it went too far
 
 const LevelRow& row_of(LinkLevel level) {
@@ -142,35 +138,6 @@ bool LinkPace::is_congested(Time delay, Time before, Time now) noexcept {
   return grew_ >= kLooksThatGrow || (loses_since_ && now - *loses_since_ > kStallEnds) || stays;
 }
 
-/// Looks whether fewer states are lost where fewer leave: then they fill the link, and the level below is
-/// right. What is lost at any rate is not theirs.
-void LinkPace::weigh_loss(Time now) noexcept {
-  const protocol::UplinkCounts &then = before_.uplink, &newest = look_.uplink;
-  if (before_.newest == 0 || newest.lost < then.lost || newest.came < then.came) return;
-  const std::uint64_t lost = newest.lost - then.lost, all = lost + newest.came - then.came;
-  const bool tries = loss_.tried > 0;
-  if (!tries && (level_ != LinkLevel::kFull || !exceeds(lost, all, kHeavyLoss))) {
-    loss_ = {.others = exceeds(lost, all, kMostLost) ? loss_.others : 0};
-    return;
-  }
-  if (!tries && loss_.all == 0) loss_.since = now;
-  loss_.lost += lost;
-  loss_.all += all;
-  const double share = loss_.share(), tried = loss_.tried;
-  if (now - loss_.since < (tries ? kTries : kLosesFor) || (!tries && share < kTells * loss_.others)) return;
-  if (!tries) {
-    change(LinkLevel::kPacked, now);
-    settled_ = now + std::max(kInFlight, 2 * delay_);
-    loss_ = {.since = now, .tried = share};
-  } else if (kTells * share < tried || 1 - share > kTells * (1 - tried)) {
-    loss_ = {};
-    calm_ = std::clamp(2 * calm_, kCalmAfterFailure, kLongestCalm);
-  } else {
-    change(LinkLevel::kFull, now);
-    loss_ = {.others = tried};
-  }
-}
-
 void LinkPace::judge(Time delay, Time now) noexcept {
   const Time before = std::exchange(delay_, delay);
   if (now < settled_) return;
@@ -178,8 +145,6 @@ void LinkPace::judge(Time delay, Time now) noexcept {
     calm_since_.reset();
   else if (!calm_since_)
     calm_since_ = now;
-  weigh_loss(now);
-  if (now < settled_) return;
   if (is_congested(delay, before, now)) {
     if (raised_ != Time{} && now - raised_ < kTrial)
       calm_ = std::clamp(2 * calm_, kCalmAfterFailure, kLongestCalm);
@@ -194,7 +159,6 @@ void LinkPace::judge(Time delay, Time now) noexcept {
 }
 
 void LinkPace::change(LinkLevel level, Time now) noexcept {
-  loss_ = {};
   if (level > level_) raised_ = {};
   level_ = level;
   settled_ = level > LinkLevel::kFull && raised_ != now ? now + std::max(kSettles, 2 * delay_) : now;

@@ -27,10 +27,8 @@ const char* name_of(LinkLevel level) noexcept;
 /// 6817), by more than jitter explains (`Jitter`). Where it grows meanwhile, or is still there after
 /// datagrams were lost, or stays, the level goes down by one. After a calm time the level goes up by one;
 /// where that fails, twice the time passes until the next trial, and half of it once no level changed for so
-/// long. Loss alone changes nothing for longer than a trial takes, nor does a way that becomes longer at
-/// once, nor a stall, however often it recurs: where a third of the states of a second are lost, in each
-/// look, and nothing waits, the level below shows whether fewer of them fill a queue that is too short to be
-/// seen. A session begins packed. Pure; network thread; no allocation.
+/// long. Loss alone changes nothing, nor does a way that becomes longer at once, nor a stall, however often
+/// it recurs. A session begins packed. Pure; network thread; no allocation.
 class LinkPace {
  public:
   /// A sample came at `now`. `age`: since its tool position was read.
@@ -68,7 +66,6 @@ class LinkPace {
   bool is_congested(Time delay, Time before, Time now) noexcept;
   void judge(Time delay, Time now) noexcept;
   bool loses() const noexcept;
-  void weigh_loss(Time now) noexcept;
   void change(LinkLevel level, Time now) noexcept;
 
   LinkLevel level_ = LinkLevel::kPacked;
@@ -84,16 +81,6 @@ class LinkPace {
   Time delay_{};       // of the look before
   Look look_, before_;
   Jitter jitter_;
-  /// States that were lost where nothing waits.
-  struct Loss {
-    Time since{};
-    std::uint64_t lost = 0, all = 0;  // since then
-    double tried = 0;   // share of them at `kFull`, while the level below is tried; 0: it is not
-    double others = 0;  // that fewer states did not make less; 0: not known
-    double share() const noexcept {
-      return all > 0 ? static_cast<double>(lost) / static_cast<double>(all) : 0;
-    }
-  } loss_;
 
   static constexpr Time kFirstCalm = std::chrono::seconds(1);
 };
