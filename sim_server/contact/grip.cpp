@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <utility>
 
 #include "common/error.h"
 
@@ -58,10 +59,11 @@ Grip::Grip(const ToolSettings& tool, std::span<const Vec3> rest, std::span<const
 
 void Grip::change_surface(const SurfaceChange& change, std::span<const Triangle> touchable) {
   touchable_ = corners_of(touchable);
-  for (const Split& split : change.splits) {
-    const auto held = std::ranges::find(vertices_, split.vertex);
-    if (held != vertices_.end())
-      hold(split.copy, Vec3(offsets_[static_cast<std::size_t>(held - vertices_.begin())]));
+  std::vector<std::pair<int, Vec3>> copies;
+  for (const auto& [copy, origin] : change.origins()) {
+    const auto held = std::ranges::find(vertices_, origin);
+    if (held != vertices_.end() && change.on_surface(copy))
+      copies.emplace_back(copy, offsets_[static_cast<std::size_t>(held - vertices_.begin())]);
   }
   std::size_t stored = 0;
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
@@ -71,6 +73,7 @@ void Grip::change_surface(const SurfaceChange& change, std::span<const Triangle>
   }
   vertices_.resize(stored);
   offsets_.resize(stored);
+  for (const auto& [copy, offset] : copies) hold(copy, offset);
 }
 
 void Grip::close(const ToolPose& pose, std::span<const Vec3> positions) noexcept {

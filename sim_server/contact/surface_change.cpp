@@ -6,10 +6,11 @@ namespace palpate::sim {
 
 void SurfaceChange::apply_to(std::vector<VertexLoad>& loads) const {
   for (const Split& split : splits) {
-    const auto load = std::ranges::find(loads, split.vertex, &VertexLoad::vertex);
-    if (load == loads.end()) continue;
-    load->force /= 2;
-    loads.push_back({split.copy, Vec3(load->force)});
+    for (std::size_t i = 0, end = loads.size(); i < end; ++i) {  // of each tool that presses there
+      if (loads[i].vertex != split.vertex) continue;
+      loads[i].force /= 2;
+      loads.push_back({split.copy, Vec3(loads[i].force)});
+    }
   }
   std::erase_if(loads, [this](const VertexLoad& load) { return !on_surface(load.vertex); });
 }

@@ -55,7 +55,7 @@ TEST_CASE("a session of ten minutes: memory stays flat, the paper's table is pri
   CHECK(resident_kb(client) <= client_early + 256);
   CHECK(resident_kb(server.process) <= server_early + 256);
   CHECK(client.wait() == 0);
-  CHECK(client.output().find("paper: % of the force on the line") != std::string::npos);
+  CHECK(client.output().find("paper: % of force on the line") != std::string::npos);
   CHECK(read_json(report)["tools"][0]["methods"]["constant"]["paper_mean_percent"].get<double>() > 0);
   WARN(client.output().substr(client.output().find("haptic_client: simulated")));
 }

@@ -245,3 +245,15 @@ TEST_CASE("loads follow a cut: a vertex and its copies bear what the vertex bore
   }
   CHECK(change.origins() == std::map<int, int>{{10, 3}, {11, 5}, {12, 3}});
 }
+
+TEST_CASE("loads follow a cut: those of each tool that presses on a vertex that becomes two") {
+  const Surface surface;
+  const std::vector<Split> splits{{3, 10}};
+  const SurfaceChange change{{}, surface, [](int) { return true; }, splits};
+  std::vector<VertexLoad> loads{{3, Vec3(2, 0, 0)}, {3, Vec3(0, 6, 0)}};
+  change.apply_to(loads);
+  std::map<int, Vec3> sums{{3, Vec3::Zero()}, {10, Vec3::Zero()}};
+  for (const VertexLoad& load : loads) sums.at(load.vertex) += load.force;
+  CHECK(sums.at(3) == Vec3(1, 3, 0));
+  CHECK(sums.at(10) == Vec3(1, 3, 0));
+}
