@@ -257,3 +257,24 @@ TEST_CASE("loads follow a cut: those of each tool that presses on a vertex that 
   CHECK(sums.at(3) == Vec3(1, 3, 0));
   CHECK(sums.at(10) == Vec3(1, 3, 0));
 }
+
+TEST_CASE(
+    "full jaws keep what they hold where a copy leaves at once, and a copy takes the room of its vertex") {
+  // A square of four vertices, of which one becomes two: vertex 4 lies where vertex 0 does.
+  const std::vector<Vec3> rest{{0, 0, 0}, {1e-3, 0, 0}, {1e-3, 0, 1e-3}, {0, 0, 1e-3}, {0, 0, 0}};
+  const std::vector<Triangle> triangles{{0, 2, 1}, {0, 3, 2}};
+  const std::vector<Split> splits{{0, 4}};
+  const Surface surface{{0, 1, 2, 3, 4}, triangles, 1};
+  ToolSettings jaws;
+  jaws.shape.radius = 0.005;
+  jaws.grasp_place = Vec3(4e-4, 0, 4e-4);
+  for (const int gone : {4, 0}) {
+    CAPTURE(gone);
+    Grip grip(jaws, rest, triangles, 4);
+    REQUIRE(grip.vertices().size() == 4);
+    grip.change_surface({rest, surface, [gone](int v) { return v != gone; }, splits}, triangles);
+    std::vector<int> held(grip.vertices().begin(), grip.vertices().end());
+    std::ranges::sort(held);
+    CHECK(held == (gone == 4 ? std::vector<int>{0, 1, 2, 3} : std::vector<int>{1, 2, 3, 4}));
+  }
+}
