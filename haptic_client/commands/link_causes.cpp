@@ -11,6 +11,7 @@
 #include <netinet/in.h>
 #include <sys/resource.h>
 
+#include "common/realtime.h"
 #include "haptic_client/session/haptic_loop.h"
 #include "protocol/key_file.h"
 
